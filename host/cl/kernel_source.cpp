@@ -1,0 +1,66 @@
+#include "cl/kernel_source.h"
+
+#include <set>
+#include <stdexcept>
+
+namespace wavelobe {
+namespace {
+
+std::string_view embedded_text(std::string_view path) {
+    for (const KernelFile& file : embedded_kernel_files()) {
+        if (file.path == path) return file.text;
+    }
+    throw std::runtime_error("kernel source includes \"" + std::string(path) + "\", which is not embedded");
+}
+
+// The path in `#include "path"`, or an empty view for any other line.
+std::string_view included_path(std::string_view line) {
+    constexpr std::string_view directive = "#include \"";
+    const std::size_t start = line.find_first_not_of(" \t");
+    if (start == std::string_view::npos || line.substr(start, directive.size()) != directive) return {};
+    const std::string_view rest = line.substr(start + directive.size());
+    return rest.substr(0, rest.find('"'));
+}
+
+class Flattener {
+public:
+    std::string text;
+
+    void append(std::string_view source, std::string_view name) {
+        mark(1, name);
+        int line_number = 1;
+        while (!source.empty()) {
+            const std::size_t end = std::min(source.find('\n'), source.size() - 1);
+            const std::string_view line = source.substr(0, end + 1);
+            source.remove_prefix(end + 1);
+            ++line_number;
+            const std::string_view path = included_path(line);
+            if (path.empty()) {
+                text += line;
+                continue;
+            }
+            if (path.ends_with(".def") || seen_.insert(std::string(path)).second) {
+                append(embedded_text(path), path);
+                if (!text.ends_with('\n')) text += '\n';
+            }
+            mark(line_number, name);
+        }
+    }
+
+private:
+    void mark(int line, std::string_view name) {
+        text += "#line " + std::to_string(line) + " \"" + std::string(name) + "\"\n";
+    }
+
+    std::set<std::string> seen_;
+};
+
+}  // namespace
+
+std::string flatten_includes(std::string_view source, std::string_view name) {
+    Flattener flattener;
+    flattener.append(source, name);
+    return std::move(flattener.text);
+}
+
+}  // namespace wavelobe

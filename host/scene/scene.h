@@ -1,0 +1,233 @@
+// The neutral scene: what a scene file means, whatever format it came from.  Readers fill it, the
+// renderer flattens it into device buffers (host/render/flatten.h).  Lengths are in scene units,
+// angles in degrees where a name says so, colours are linear sRGB (Rec. 709 primaries).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+namespace wavelobe {
+
+using Rgb = glm::vec3;
+
+// ---- textures ------------------------------------------------------------------------------------
+
+enum class Wrap : std::uint8_t { repeat, mirror, clamp };
+enum class Filter : std::uint8_t { nearest, bilinear };
+
+// Row 0 is the top of the image, as in the file; `flatten` maps v upwards the way Mitsuba does.
+struct Bitmap {
+    int width = 0;
+    int height = 0;
+    std::vector<float> rgb;  // width * height * 3, linear
+    Filter filter = Filter::bilinear;
+    Wrap wrap = Wrap::repeat;
+};
+
+struct Checkerboard {
+    Rgb color0{0.4F};
+    Rgb color1{0.2F};
+};
+
+struct Texture {
+    std::variant<Bitmap, Checkerboard> source;
+    glm::mat3 to_uv{1.0F};  // applied to (u, v, 1) before the look-up
+    std::string name;
+};
+
+// A material parameter: a constant, or a texture over the surface's (u, v).
+// A scalar parameter (roughness) uses the red channel.
+struct Parameter {
+    Rgb value{0.0F};
+    std::shared_ptr<const Texture> texture;  // null: constant
+};
+
+// ---- materials -----------------------------------------------------------------------------------
+
+enum class Distribution : std::uint8_t { ggx, beckmann };
+
+struct Diffuse {
+    Parameter reflectance{Rgb{0.5F}, nullptr};
+};
+
+// eta and k are relative to the medium outside. eta = 0, k = 1 stands for a perfect mirror ("none").
+struct Conductor {
+    Rgb eta{0.0F};
+    Rgb k{1.0F};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+};
+
+struct RoughConductor {
+    Rgb eta{0.0F};
+    Rgb k{1.0F};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    Parameter alpha_u{Rgb{0.1F}, nullptr};
+    Parameter alpha_v{Rgb{0.1F}, nullptr};
+    Distribution distribution = Distribution::beckmann;
+};
+
+struct Dielectric {
+    float eta = 1.5046F / 1.000277F;  // interior index over exterior index
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    Parameter specular_transmittance{Rgb{1.0F}, nullptr};
+};
+
+struct ThinDielectric {
+    float eta = 1.5046F / 1.000277F;
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    Parameter specular_transmittance{Rgb{1.0F}, nullptr};
+};
+
+struct RoughDielectric {
+    float eta = 1.5046F / 1.000277F;
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    Parameter specular_transmittance{Rgb{1.0F}, nullptr};
+    Parameter alpha_u{Rgb{0.1F}, nullptr};
+    Parameter alpha_v{Rgb{0.1F}, nullptr};
+    Distribution distribution = Distribution::beckmann;
+};
+
+struct Plastic {
+    float eta = 1.49F / 1.000277F;
+    Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    bool nonlinear = false;
+};
+
+// Normalized Phong of Mitsuba 0.x: diffuse / pi + specular * (exponent + 2) / (2 pi) * cos^exponent.
+struct Phong {
+    Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
+    Parameter specular_reflectance{Rgb{0.2F}, nullptr};
+    Parameter exponent{Rgb{30.0F}, nullptr};
+};
+
+using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
+                                   RoughDielectric, Plastic, Phong>;
+
+struct Material {
+    MaterialModel model;
+    std::string name;  // id in the file, for messages
+};
+
+// What a surface shows on each side. Transmissive materials have the same index on both sides;
+// a one-sided opaque material has no back (black there); `twosided` has both.
+struct SurfaceMaterial {
+    int front = 0;  // index into Scene::materials
+    int back = -1;  // -1: black
+};
+
+// ---- shapes --------------------------------------------------------------------------------------
+
+// World-space triangles. `normals` (unit, world space) and `uvs` are empty or one a vertex.
+struct TriangleMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec2> uvs;
+    std::vector<glm::uvec3> triangles;
+    bool parallelogram = false;  // exactly two triangles (0,1,2) (0,2,3) forming a parallelogram: lit as one
+};
+
+// Unit shapes in their own space: sphere of radius 1 about the origin; disk of radius 1 in z = 0,
+// normal +z; cylinder of radius 1 about +z from z = 0 to z = 1, normal outwards.
+struct AnalyticShape {
+    enum class Kind : std::uint8_t { sphere, disk, cylinder } kind = Kind::sphere;
+    glm::mat4 to_world{1.0F};
+};
+
+struct AreaEmitter {
+    Parameter radiance;  // W / (m^2 sr), emitted on the side of the normal
+};
+
+struct Shape {
+    std::variant<TriangleMesh, AnalyticShape> geometry;
+    SurfaceMaterial material;
+    std::optional<AreaEmitter> emitter;
+    bool flip_normals = false;  // analytic shapes only: a reader has already applied it to meshes
+    std::string name;
+};
+
+// ---- emitters without a shape ---------------------------------------------------------------------
+
+struct ConstantEmitter {
+    Rgb radiance{1.0F};
+};
+
+// Latitude-longitude map. Direction d in its own space looks up u = atan2(d.x, -d.z) / 2 pi,
+// v = acos(d.y) / pi, as Mitsuba 3 does.
+struct EnvironmentMap {
+    Bitmap image;
+    float scale = 1.0F;
+    glm::mat4 to_world{1.0F};
+};
+
+struct PointEmitter {
+    glm::vec3 position{0.0F};
+    Rgb intensity{1.0F};  // W / sr
+};
+
+struct SpotEmitter {
+    glm::mat4 to_world{1.0F};  // shines along +z
+    Rgb intensity{1.0F};
+    float cutoff_degrees = 20.0F;
+    float beam_width_degrees = 15.0F;
+};
+
+struct DirectionalEmitter {
+    glm::vec3 direction{0.0F, 0.0F, 1.0F};  // unit, the way the light travels
+    Rgb irradiance{1.0F};                   // W / m^2 on a surface facing it
+};
+
+using Emitter =
+    std::variant<ConstantEmitter, EnvironmentMap, PointEmitter, SpotEmitter, DirectionalEmitter>;
+
+// ---- sensor, film, integrator -----------------------------------------------------------------------
+
+struct ReconstructionFilter {
+    enum class Kind : std::uint8_t { box, tent, gaussian } kind = Kind::gaussian;
+    float radius = 2.0F;  // half width in pixels (box 0.5, tent 1, gaussian 4 stddev)
+    float stddev = 0.5F;  // gaussian only
+};
+
+struct Film {
+    int width = 768;
+    int height = 576;
+    int crop_x = 0;
+    int crop_y = 0;
+    int crop_width = 768;
+    int crop_height = 576;
+    ReconstructionFilter filter;
+};
+
+// Looks along its own +z with +y up and +x to the left of the picture, as Mitsuba does.
+struct PerspectiveCamera {
+    glm::mat4 to_world{1.0F};
+    float fov_x_degrees = 39.3077F;  // horizontal, over the whole film (readers resolve fov_axis)
+    float near_clip = 0.01F;
+    float far_clip = 10000.0F;
+    glm::vec2 principal_point_offset{0.0F};
+};
+
+struct Integrator {
+    int max_depth = -1;  // path edges seen from the camera; -1: unlimited, 1: emitters alone
+    int rr_depth = 5;    // Russian roulette from this depth on
+    bool hide_emitters = false;
+};
+
+struct Scene {
+    std::vector<Material> materials;
+    std::vector<Shape> shapes;
+    std::vector<Emitter> emitters;
+    PerspectiveCamera camera;
+    Film film;
+    Integrator integrator;
+    int sample_count = 16;
+    std::string name;  // file name without folder and ending
+};
+
+}  // namespace wavelobe

@@ -1,0 +1,59 @@
+// A light as the kernels see it, and the tables that choose among lights and among environment cells.
+#ifndef WAVELOBE_SHARED_LIGHTS_H
+#define WAVELOBE_SHARED_LIGHTS_H
+
+#include "shared/materials.h"
+
+// One row of an alias table (Walker 1974, Vose 1991): entry i stands with probability `threshold`,
+// otherwise `other` does.
+struct AliasEntry {
+    float threshold;
+    Uint32 other;
+};
+WAVELOBE_CHECK_SIZE(AliasEntry, 8);
+
+// Which fields a kind uses is said in its lights/<name>.h.
+struct Light {
+    Uint32 kind;                  // LIGHT_x of lights/lights.def
+    float selection_probability;  // of this light among all, by power
+    struct AliasEntry alias;      // row of this light in the selection table
+    struct TexturedRgb radiance;  // W / (m^2 sr); point and spot: intensity, W / sr; directional: irradiance, W / m^2
+    struct Packed3 position;      // first vertex; point, spot: where it is
+    struct Packed3 edge1;         // to the second vertex; spot, directional: direction the light travels, unit
+    struct Packed3 edge2;         // to the third vertex
+    struct Packed3 normal;        // unit, on the emitting side
+    float inverse_area;           // 1 / m^2
+    float uv[6];                  // of the three vertices (texture coordinates of a textured emitter)
+    Uint32 analytic;              // index of its analytic shape
+    float cos_cutoff, cos_beam;   // spot
+};
+WAVELOBE_CHECK_SIZE(Light, 128);
+
+// An analytic shape: unit sphere, unit disk in z = 0, or unit cylinder along z in [0, 1], under an affine map.
+struct Analytic {
+    struct Affine to_world;
+    struct Affine to_object;
+    Uint32 kind;      // ANALYTIC_x
+    float flip;       // -1: normals point the other way, otherwise 1
+    float area;       // world space
+    float radius;     // sphere: world-space radius
+};
+WAVELOBE_CHECK_SIZE(Analytic, 112);
+
+#define ANALYTIC_SPHERE 0u
+#define ANALYTIC_DISK 1u
+#define ANALYTIC_CYLINDER 2u
+
+// The environment: a latitude-longitude picture, bilinear between texel centres, wrapping in longitude. It is sampled
+// by cells, the squares between four neighbouring texel centres, with a constant density inside each cell in (u, v).
+struct Environment {
+    struct Affine to_world;
+    struct Affine to_object;
+    Uint32 width, height; // texels; a constant environment is 0 x 0
+    Uint32 cell_columns, cell_rows;
+    struct Packed3 radiance; // of a constant environment; scale of a picture otherwise
+    Uint32 light;            // index of its light record
+};
+WAVELOBE_CHECK_SIZE(Environment, 128);
+
+#endif

@@ -1,0 +1,28 @@
+// Scalar types that mean the same to both compilers.
+#ifndef WAVELOBE_SHARED_TYPES_H
+#define WAVELOBE_SHARED_TYPES_H
+
+#ifdef __OPENCL_VERSION__
+typedef uint Uint32;
+#define WAVELOBE_CHECK_SIZE(type, bytes) typedef char check_size_of_##type[sizeof(struct type) == (bytes) ? 1 : -1]
+#else
+#include <cstdint>
+using Uint32 = std::uint32_t;
+#define WAVELOBE_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), "host and kernels must agree")
+#endif
+
+#define WAVELOBE_NONE 0xffffffffu
+
+// Twelve bytes on both sides, unlike OpenCL's float3.
+struct Packed3 {
+    float x, y, z;
+};
+WAVELOBE_CHECK_SIZE(Packed3, 12);
+
+// Row-major affine map: three rows of (x, y, z, translation).
+struct Affine {
+    float m[12];
+};
+WAVELOBE_CHECK_SIZE(Affine, 48);
+
+#endif
