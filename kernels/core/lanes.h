@@ -13,6 +13,9 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 
+// Wide vectors never cross a call on machines that lack the registers: everything is inlined.
+#pragma clang diagnostic ignored "-Wpsabi"
+
 #ifndef LANES
 #define LANES 16
 #endif
