@@ -21,7 +21,11 @@ using Rgb = glm::vec3;
 enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 enum class Filter : std::uint8_t { nearest, bilinear };
 
-// Row 0 is the top of the image, as in the file; `flatten` maps v upwards the way Mitsuba does.
+// Row 0 is the top of the image, as in the file. A look-up at (u, v), to_uv applied, uses texel
+// coordinates x = u * width, y = v * height: v grows downwards from the top row, with no flip (mesh
+// readers flip v where the format asks for it). Texel (i, j) covers [i, i + 1) x [j, j + 1):
+// nearest takes (floor(x), floor(y)); bilinear blends the four texels around (x - 0.5, y - 0.5), from
+// (floor(x - 0.5), floor(y - 0.5)) on. The wrap mode applies to each integer texel index.
 struct Bitmap {
     int width = 0;
     int height = 0;
@@ -30,6 +34,7 @@ struct Bitmap {
     Wrap wrap = Wrap::repeat;
 };
 
+// color0 where (u, v), to_uv applied, has both or neither of its fractions above one half.
 struct Checkerboard {
     Rgb color0{0.4F};
     Rgb color1{0.2F};
@@ -42,7 +47,7 @@ struct Texture {
 };
 
 // A material parameter: a constant, or a texture over the surface's (u, v).
-// A scalar parameter (roughness) uses the red channel.
+// A scalar parameter (roughness) uses the red channel; readers fold colours into it.
 struct Parameter {
     Rgb value{0.0F};
     std::shared_ptr<const Texture> texture;  // null: constant
@@ -124,7 +129,9 @@ struct SurfaceMaterial {
 
 // ---- shapes --------------------------------------------------------------------------------------
 
-// World-space triangles. `normals` (unit, world space) and `uvs` are empty or one a vertex.
+// World-space triangles, their geometric normal is along cross(p1 - p0, p2 - p0). `normals` (unit,
+// world space; empty: flat) and `uvs` (empty: the barycentric coordinates of p1 and p2 take their
+// place) are empty or one a vertex.
 struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
@@ -158,8 +165,9 @@ struct ConstantEmitter {
     Rgb radiance{1.0F};
 };
 
-// Latitude-longitude map. Direction d in its own space looks up u = atan2(d.x, -d.z) / 2 pi,
-// v = acos(d.y) / pi, as Mitsuba 3 does.
+// Latitude-longitude map. Direction d in its own space looks up u = atan2(d.x, -d.z) / 2 pi, wrapped
+// around, and v = acos(d.y) / pi, clamped, with the texel coordinates of Bitmap: row 0 is +y. At least
+// 2 x 3 texels.
 struct EnvironmentMap {
     Bitmap image;
     float scale = 1.0F;
@@ -226,8 +234,10 @@ struct Scene {
     PerspectiveCamera camera;
     Film film;
     Integrator integrator;
-    int sample_count = 16;
+    int sample_count = 4;
+    std::uint32_t seed = 0;
     std::string name;  // file name without folder and ending
+    std::vector<std::string> warnings;  // what a reader passed over or repaired, one line each
 };
 
 }  // namespace wavelobe

@@ -27,7 +27,7 @@ struct Light {
     Uint32 analytic;              // index of its analytic shape
     float cos_cutoff, cos_beam;   // spot
 };
-WAVELOBE_CHECK_SIZE(Light, 128);
+WAVELOBE_CHECK_SIZE(Light, 120);
 
 // An analytic shape: unit sphere, unit disk in z = 0, or unit cylinder along z in [0, 1], under an affine map.
 struct Analytic {

@@ -1,0 +1,268 @@
+#include "accel/bvh.h"
+
+#include <embree3/rtcore.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace wavelobe {
+namespace {
+
+constexpr unsigned width = BVH_WIDTH;
+// Below this depth Embree stops looking for good splits; real scenes stay under 15 levels of eight.
+constexpr unsigned max_depth = 40;
+
+// What Embree's builder makes; lives in its thread-local allocator.
+struct BuildNode {
+    bool leaf = false;
+    unsigned count = 0;
+    BuildNode* child[width] = {};
+    Bounds bounds[width];
+    std::uint32_t primitive[width] = {};  // leaves
+};
+
+struct Source {
+    std::span<const TriangleVertices> triangles;
+    bool is_triangle(std::uint32_t id) const { return id < triangles.size(); }
+};
+
+BuildNode* allocate_node(RTCThreadLocalAllocator allocator, unsigned count, bool leaf) {
+    auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
+    node->leaf = leaf;
+    node->count = count;
+    return node;
+}
+
+void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
+    return allocate_node(allocator, count, false);
+}
+
+void set_children(void* node, void** children, unsigned count, void*) {
+    for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(node)->child[i] = static_cast<BuildNode*>(children[i]);
+}
+
+void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
+    for (unsigned i = 0; i < count; ++i) {
+        static_cast<BuildNode*>(node)->bounds[i] = {
+            {bounds[i]->lower_x, bounds[i]->lower_y, bounds[i]->lower_z},
+            {bounds[i]->upper_x, bounds[i]->upper_y, bounds[i]->upper_z}};
+    }
+}
+
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, std::size_t count, void*) {
+    BuildNode* leaf = allocate_node(allocator, static_cast<unsigned>(count), true);
+    for (std::size_t i = 0; i < count && i < width; ++i) leaf->primitive[i] = primitives[i].primID;
+    return leaf;
+}
+
+// Bounds of the parts of a triangle on both sides of a plane, within the primitive's present bounds.
+void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float position, RTCBounds* left,
+                     RTCBounds* right, void* user) {
+    const glm::vec3 lower{primitive->lower_x, primitive->lower_y, primitive->lower_z};
+    const glm::vec3 upper{primitive->upper_x, primitive->upper_y, primitive->upper_z};
+    const auto dimension = static_cast<glm::length_t>(axis);
+    Bounds l{lower, upper};
+    Bounds r{lower, upper};
+    l.upper[dimension] = position;
+    r.lower[dimension] = position;
+    const Source& source = *static_cast<const Source*>(user);
+    if (source.is_triangle(primitive->primID)) {
+        Bounds below;
+        Bounds above;
+        const TriangleVertices& v = source.triangles[primitive->primID];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const glm::vec3 a = v[i];
+            const glm::vec3 b = v[(i + 1) % 3];
+            const float pa = a[dimension];
+            const float pb = b[dimension];
+            if (pa <= position) below.extend(a);
+            if (pa >= position) above.extend(a);
+            if ((pa < position && pb > position) || (pa > position && pb < position)) {
+                glm::vec3 crossing = a + (b - a) * ((position - pa) / (pb - pa));
+                crossing[dimension] = position;
+                below.extend(crossing);
+                above.extend(crossing);
+            }
+        }
+        l = {glm::max(below.lower, l.lower), glm::min(below.upper, l.upper)};
+        r = {glm::max(above.lower, r.lower), glm::min(above.upper, r.upper)};
+    }
+    *left = {l.lower.x, l.lower.y, l.lower.z, 0.0F, l.upper.x, l.upper.y, l.upper.z, 0.0F};
+    *right = {r.lower.x, r.lower.y, r.lower.z, 0.0F, r.upper.x, r.upper.y, r.upper.z, 0.0F};
+}
+
+// Copies Embree's tree into the layout of the kernels, depth first so that a subtree is contiguous.
+class Encoder {
+public:
+    explicit Encoder(const Source& source) : source_(source) {}
+
+    Bvh take() { return std::move(bvh_); }
+
+    void encode_root(const BuildNode* root) {
+        if (root == nullptr) {
+            new_node();
+        } else if (root->leaf) {
+            const auto node = new_node();
+            constexpr float far = std::numeric_limits<float>::max();
+            encode_child(node, 0, root, {glm::vec3{-far}, glm::vec3{far}}, 1);
+        } else {
+            encode_node(root, 1);
+        }
+    }
+
+private:
+    std::uint32_t new_node() {
+        constexpr float infinity = std::numeric_limits<float>::infinity();
+        BvhNode node{};
+        for (unsigned i = 0; i < width; ++i) {
+            for (unsigned row = 0; row < 6; ++row) node.bounds[row][i] = row % 2 == 0 ? infinity : -infinity;
+            node.child[i] = BVH_EMPTY;
+        }
+        bvh_.nodes.push_back(node);
+        return static_cast<std::uint32_t>(bvh_.nodes.size() - 1);
+    }
+
+    std::uint32_t encode_node(const BuildNode* source, int level) {
+        bvh_.depth = std::max(bvh_.depth, level);
+        const std::uint32_t node = new_node();
+        for (unsigned i = 0; i < source->count; ++i) encode_child(node, i, source->child[i], source->bounds[i], level);
+        return node;
+    }
+
+    void encode_child(std::uint32_t node, unsigned i, const BuildNode* child, const Bounds& bounds, int level) {
+        const std::uint32_t reference = child->leaf ? encode_leaf(child, bounds, level) : encode_node(child, level + 1);
+        set_child(node, i, bounds, reference);
+    }
+
+    void set_child(std::uint32_t node, unsigned i, const Bounds& bounds, std::uint32_t reference) {
+        BvhNode& n = bvh_.nodes[node];
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            n.bounds[2 * axis][i] = bounds.lower[axis];
+            n.bounds[2 * axis + 1][i] = bounds.upper[axis];
+        }
+        n.child[i] = reference;
+    }
+
+    // A leaf holds triangles or analytic shapes; one that got both becomes a node of two leaves.
+    std::uint32_t encode_leaf(const BuildNode* leaf, const Bounds& bounds, int level) {
+        if (leaf->count > width) throw std::runtime_error("the hierarchy builder made a leaf of " + std::to_string(leaf->count));
+        std::vector<std::uint32_t> triangles;
+        std::vector<std::uint32_t> analytics;
+        for (unsigned i = 0; i < leaf->count; ++i) {
+            (source_.is_triangle(leaf->primitive[i]) ? triangles : analytics).push_back(leaf->primitive[i]);
+        }
+        if (analytics.empty()) return add_block(triangles);
+        if (triangles.empty()) return add_analytics(analytics);
+        bvh_.depth = std::max(bvh_.depth, level + 1);
+        const std::uint32_t node = new_node();
+        set_child(node, 0, bounds, add_block(triangles));
+        set_child(node, 1, bounds, add_analytics(analytics));
+        return node;
+    }
+
+    std::uint32_t add_block(std::span<const std::uint32_t> triangles) {
+        TriangleBlock block{};
+        for (unsigned lane = 0; lane < width; ++lane) {
+            block.primitive[lane] = lane < triangles.size() ? triangles[lane] : 0;
+            if (lane >= triangles.size()) continue;
+            for (unsigned vertex = 0; vertex < 3; ++vertex) {
+                for (unsigned axis = 0; axis < 3; ++axis) {
+                    block.vertex[3 * vertex + axis][lane] =
+                        source_.triangles[triangles[lane]][vertex][static_cast<glm::length_t>(axis)];
+                }
+            }
+        }
+        bvh_.blocks.push_back(block);
+        return BVH_LEAF | static_cast<std::uint32_t>(bvh_.blocks.size() - 1);
+    }
+
+    std::uint32_t add_analytics(std::span<const std::uint32_t> ids) {
+        const auto first = static_cast<std::uint32_t>(bvh_.analytic_order.size());
+        for (const std::uint32_t id : ids) {
+            bvh_.analytic_order.push_back(id - static_cast<std::uint32_t>(source_.triangles.size()));
+        }
+        return BVH_LEAF | BVH_ANALYTIC | (first << 4U) | static_cast<std::uint32_t>(ids.size());
+    }
+
+    const Source& source_;
+    Bvh bvh_;
+};
+
+RTCBuildPrimitive build_primitive(const Bounds& b, std::size_t id) {
+    return {b.lower.x, b.lower.y, b.lower.z, 0, b.upper.x, b.upper.y, b.upper.z, static_cast<unsigned>(id)};
+}
+
+std::vector<RTCBuildPrimitive> build_primitives(const Source& source, std::span<const Bounds> analytic_bounds,
+                                                BvhQuality quality) {
+    const std::size_t count = source.triangles.size() + analytic_bounds.size();
+    // Spatial splits need room for the references they add.
+    std::vector<RTCBuildPrimitive> primitives(quality == BvhQuality::best ? 2 * count : count);
+    std::size_t next = 0;
+    for (const TriangleVertices& v : source.triangles) {
+        Bounds b;
+        for (const glm::vec3& p : v) b.extend(p);
+        primitives[next] = build_primitive(b, next);
+        ++next;
+    }
+    for (const Bounds& b : analytic_bounds) {
+        primitives[next] = build_primitive(b, next);
+        ++next;
+    }
+    return primitives;
+}
+
+struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseBvh {
+    void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
+};
+
+}  // namespace
+
+Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
+              int threads) {
+    const auto start = std::chrono::steady_clock::now();
+    Source source{triangles};
+    Encoder encoder(source);
+    if (triangles.empty() && analytic_bounds.empty()) {
+        encoder.encode_root(nullptr);
+        return encoder.take();
+    }
+    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
+    const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice(config.c_str()));
+    if (!device) throw std::runtime_error("Embree's builder could not be started");
+    const std::unique_ptr<RTCBVHTy, ReleaseBvh> tree(rtcNewBVH(device.get()));
+    std::vector<RTCBuildPrimitive> primitives = build_primitives(source, analytic_bounds, quality);
+
+    RTCBuildArguments arguments = rtcDefaultBuildArguments();
+    arguments.byteSize = sizeof arguments;
+    arguments.buildQuality = quality == BvhQuality::best ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+    arguments.maxBranchingFactor = width;
+    arguments.maxDepth = max_depth;
+    // Full leaves: a block of eight costs the same whether it holds one triangle or eight.
+    arguments.sahBlockSize = width;
+    arguments.minLeafSize = width;
+    arguments.maxLeafSize = width;
+    arguments.bvh = tree.get();
+    arguments.primitives = primitives.data();
+    arguments.primitiveCount = triangles.size() + analytic_bounds.size();
+    arguments.primitiveArrayCapacity = primitives.size();
+    arguments.createNode = create_node;
+    arguments.setNodeChildren = set_children;
+    arguments.setNodeBounds = set_bounds;
+    arguments.createLeaf = create_leaf;
+    arguments.splitPrimitive = split_primitive;
+    arguments.userPtr = &source;
+    const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
+    if (root == nullptr) throw std::runtime_error("Embree's builder could not build the hierarchy");
+    encoder.encode_root(root);
+    Bvh bvh = encoder.take();
+    bvh.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return bvh;
+}
+
+}  // namespace wavelobe

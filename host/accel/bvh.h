@@ -1,0 +1,43 @@
+// Builds the eight-wide bounding volume hierarchy that kernels/shapes/traversal.h walks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "shared/bvh.h"
+
+namespace wavelobe {
+
+using TriangleVertices = std::array<glm::vec3, 3>;
+
+struct Bounds {
+    glm::vec3 lower{std::numeric_limits<float>::infinity()};
+    glm::vec3 upper{-std::numeric_limits<float>::infinity()};
+
+    void extend(const glm::vec3& p) {
+        lower = glm::min(lower, p);
+        upper = glm::max(upper, p);
+    }
+};
+
+struct Bvh {
+    std::vector<BvhNode> nodes;  // the root is node 0
+    std::vector<TriangleBlock> blocks;
+    std::vector<std::uint32_t> analytic_order;  // indices of analytic shapes, run by run
+    int depth = 1;                              // levels of nodes
+    double build_seconds = 0.0;
+};
+
+enum class BvhQuality { fast, best };
+
+// Topology from Embree's public builder: surface-area heuristic, with spatial splits for `best`.
+// Primitive ids in leaves index `triangles`. `analytic_bounds` must contain their shapes with room for rounding.
+// Throws std::runtime_error if the builder fails.
+Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
+              int threads);
+
+}  // namespace wavelobe

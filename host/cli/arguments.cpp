@@ -1,0 +1,88 @@
+#include "cli/arguments.h"
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+
+#include "scene/fault.h"
+
+namespace wavelobe {
+
+namespace {
+
+template <class T>
+std::optional<T> parse_number(std::string_view text) {
+    T value{};
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size()) return {};
+    return value;
+}
+
+}  // namespace
+
+CLI::Validator whole_number(std::int64_t least, std::int64_t greatest) {
+    const auto check = [least, greatest](const std::string& text) -> std::string {
+        const auto value = parse_number<std::int64_t>(text);
+        if (value && *value >= least && *value <= greatest) return {};
+        return "\"" + text + "\" is not a whole number from " + std::to_string(least) + " to " + std::to_string(greatest);
+    };
+    return CLI::Validator(check, "");
+}
+
+void SceneArguments::add_to(CLI::App& command) {
+    command.add_option("SCENE", path, "Mitsuba 3 XML file")->required();
+    const auto is_definition = [](const std::string& text) -> std::string {
+        const std::size_t sign = text.find('=');
+        if (sign != std::string::npos && sign > 0) return {};
+        return "\"" + text + "\" is not of the form NAME=VALUE";
+    };
+    command.add_option("-D,--define", definitions, "Value of a <default> of the scene; may be given more than once")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(is_definition, ""));
+}
+
+Scene SceneArguments::read() const {
+    Definitions values;
+    for (const std::string& text : definitions) {
+        const std::size_t sign = text.find('=');
+        values[text.substr(0, sign)] = text.substr(sign + 1);
+    }
+    return read_mitsuba_scene(path, values);
+}
+
+void print_warnings(const Scene& scene) {
+    for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+std::optional<PixelWindow> parse_window(const std::string& text) {
+    std::array<int, 4> values{};
+    std::string_view rest = text;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool last = i + 1 == values.size();
+        const std::size_t end = last ? rest.size() : rest.find(',');
+        if (end == std::string_view::npos) return {};
+        const auto value = parse_number<int>(rest.substr(0, end));
+        if (!value) return {};
+        values[i] = *value;
+        if (!last) rest.remove_prefix(end + 1);
+    }
+    return PixelWindow{values[0], values[1], values[2], values[3]};
+}
+
+void set_crop_window(Film& film, const PixelWindow& window) {
+    const bool inside = window.x0 >= 0 && window.y0 >= 0 && window.x1 <= film.width && window.y1 <= film.height;
+    if (!inside || window.x0 >= window.x1 || window.y0 >= window.y1) {
+        throw InputError(Fault{"--crop", 0, 0, "",
+                               "X0,Y0,X1,Y1 must be a window of at least one pixel within the film of " +
+                                   std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels",
+                               ""});
+    }
+    film.crop_x = window.x0;
+    film.crop_y = window.y0;
+    film.crop_width = window.x1 - window.x0;
+    film.crop_height = window.y1 - window.y0;
+}
+
+}  // namespace wavelobe

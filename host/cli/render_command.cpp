@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/render_report.h"
+#include "film/exr.h"
+#include "film/png.h"
+#include "film/replace_file.h"
+#include "render/render.h"
+#include "scene/fault.h"
+
+namespace wavelobe {
+namespace {
+
+struct RenderOptions {
+    SceneArguments scene;
+    std::string exr_path;
+    std::string png_path;    // empty: none
+    std::string stats_path;  // empty: none
+    std::optional<int> samples_per_pixel;
+    std::optional<int> max_depth;
+    std::string crop;  // empty: the scene's
+    std::optional<std::uint32_t> seed;
+    int threads = 0;
+    std::string device;
+    bool quiet = false;
+    bool verbose = false;
+};
+
+class Stopwatch {
+public:
+    // Seconds since the last call, or since the start.
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> passed = now - last_;
+        last_ = now;
+        return passed.count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+void check_outputs(const RenderOptions& options) {
+    std::vector<Fault> faults;
+    std::vector<std::filesystem::path> seen;
+    for (const std::string* path : {&options.exr_path, &options.png_path, &options.stats_path}) {
+        if (path->empty() && path != &options.exr_path) continue;
+        try {
+            refuse_unwritable(*path);
+        } catch (const InputError& error) {
+            faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+        }
+        const std::filesystem::path target = output_target(*path);
+        if (std::find(seen.begin(), seen.end(), target) != seen.end()) {
+            faults.push_back(Fault{*path, 0, 0, "", "is named for two outputs", "give each its own name"});
+        }
+        seen.push_back(target);
+    }
+    if (!faults.empty()) throw InputError(std::move(faults));
+}
+
+Scene read_scene(const RenderOptions& options) {
+    Scene scene = options.scene.read();
+    if (options.samples_per_pixel) scene.sample_count = *options.samples_per_pixel;
+    if (options.max_depth) scene.integrator.max_depth = *options.max_depth;
+    if (options.seed) scene.seed = *options.seed;
+    if (const auto window = parse_window(options.crop)) set_crop_window(scene.film, *window);
+    return scene;
+}
+
+void write_outputs(const RenderOptions& options, const Scene& scene, const Image& image, const RenderReport& report) {
+    const PictureNotes notes{scene.name, report.samples_per_pixel, report.stats.samples, report.seed,
+                             report.stats.render_seconds};
+    replace_file(options.exr_path, encode_exr(image, scene.film, scene.camera, notes));
+    if (!options.png_path.empty()) replace_file(options.png_path, encode_png(image));
+    if (!options.stats_path.empty()) replace_file(options.stats_path, report_json(report));
+}
+
+int nothing_rendered() {
+    std::fprintf(stderr, "stopped before the first sample: no picture\n");
+    return exit_interrupted;
+}
+
+int run(const RenderOptions& options) {
+    Stopwatch watch;
+    check_outputs(options);
+    catch_interrupts();
+    const Scene scene = read_scene(options);
+    const double parse_seconds = watch.lap();
+    if (!options.quiet) print_warnings(scene);
+    if (interrupted()) return nothing_rendered();
+
+    const Device device(DeviceOptions{options.threads, options.device});
+    const double device_seconds = watch.lap();
+    RenderSettings settings;
+    settings.samples_per_pixel = scene.sample_count;
+    settings.seed = scene.seed;
+    Renderer renderer(device, scene, settings);
+    if (interrupted()) return nothing_rendered();
+
+    if (!options.quiet) {
+        std::fprintf(stderr, "rendering %d x %d pixels, %d samples each\n", scene.film.crop_width, scene.film.crop_height,
+                     scene.sample_count);
+    }
+    ProgressDisplay display(options.quiet);
+    const bool complete = renderer.render([&display](const Progress& progress) {
+        display.update(progress);
+        return !interrupted();
+    });
+    display.finish();
+
+    const Image image = renderer.image();
+    RenderReport report{options.scene.path, device.info().name, device.info().compute_units, scene.sample_count,
+                        scene.seed,         image.width,        image.height,                complete,
+                        renderer.stats()};
+    report.stats.setup_parts["parse"] = parse_seconds;
+    report.stats.setup_parts["device"] = device_seconds;
+    write_outputs(options, scene, image, report);
+
+    if (const std::string warning = non_finite_warning(report.stats); !warning.empty()) {
+        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    }
+    if (!options.quiet) {
+        if (options.verbose) std::printf("%s", report_table(report).c_str());
+        for (const std::string* path : {&options.exr_path, &options.png_path, &options.stats_path}) {
+            if (!path->empty()) std::printf("wrote %s\n", output_target(*path).c_str());
+        }
+        std::printf("%s\n", closing_line(report).c_str());
+    }
+    return complete ? exit_ok : exit_interrupted;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program, Chosen& chosen) {
+    CLI::App* command = program.add_subcommand("render", "Render a scene to an OpenEXR picture");
+    auto options = std::make_shared<RenderOptions>();
+    options->scene.add_to(*command);
+    // The last of an option given twice counts, so that scripts can put defaults in front of a user's options.
+    const auto add = [command](const char* name, auto& value, const char* type, const char* help) {
+        return command->add_option(name, value, help)->type_name(type)->take_last();
+    };
+    add("-o,--output", options->exr_path, "OUT.exr", "Picture to write: linear RGB, OpenEXR")->required();
+    add("--png", options->png_path, "OUT.png", "Also write it as 8-bit sRGB, clamped");
+    add("--spp", options->samples_per_pixel, "N", "Samples a pixel (default: the scene's)")->check(whole_number(1, 1 << 24));
+    add("--seed", options->seed, "N", "Another seed gives other noise (default: the scene's)")
+        ->check(whole_number(0, UINT32_MAX));
+    add("--threads", options->threads, "N", "Compute threads (default: one a core)")->check(whole_number(1, 1024));
+    add("--max-depth", options->max_depth, "N", "Longest path in edges, -1 for no limit (default: the scene's)")
+        ->check(whole_number(-1, 1 << 24));
+    const auto is_window = [](const std::string& text) -> std::string {
+        return parse_window(text) ? "" : "\"" + text + "\" is not of the form X0,Y0,X1,Y1";
+    };
+    add("--crop", options->crop, "X0,Y0,X1,Y1", "Render this window only, its right and lower edge excluded")
+        ->check(CLI::Validator(is_window, ""));
+    add("--stats", options->stats_path, "FILE.json", "Write timings and counts as JSON");
+    add("--device", options->device, "TEXT", "Part of the name of the OpenCL device or platform");
+    command->add_flag("-q,--quiet", options->quiet, "Print nothing but the warnings of a faulty picture, and errors");
+    command->add_flag("-v,--verbose", options->verbose, "Print timings and counts as a table");
+    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace wavelobe

@@ -1,0 +1,90 @@
+#include "cli/render_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/format.h"
+
+namespace wavelobe {
+namespace {
+
+double samples_per_second(const RenderStats& stats) {
+    return stats.render_seconds > 0.0 ? static_cast<double>(stats.samples) / stats.render_seconds : 0.0;
+}
+
+}  // namespace
+
+std::string closing_line(const RenderReport& report) {
+    const RenderStats& stats = report.stats;
+    return fmt::format("render {:.3f} s, setup {:.3f} s, {} samples, {} samples/s", stats.render_seconds,
+                       stats.setup_seconds(), format_millions(static_cast<double>(stats.samples)),
+                       format_millions(samples_per_second(stats)));
+}
+
+std::string report_table(const RenderReport& report) {
+    const RenderStats& stats = report.stats;
+    std::string text = fmt::format("device    {}, {} threads\nfeatures  {}\nbuffers   {}\n", report.device, report.threads,
+                                   fmt::join(stats.features, " "), format_bytes(stats.device_bytes));
+    text += "set-up                        seconds\n";
+    for (const auto& [part, seconds] : stats.setup_parts) text += fmt::format("  {:<24} {:>10.3f}\n", part, seconds);
+    text += "rays\n";
+    for (const auto& [kind, count] : stats.rays) text += fmt::format("  {:<24} {:>18}\n", kind, format_count(count));
+    text += "stage                     launches              items    seconds   ns/item\n";
+    for (const StageStats& stage : stats.stages) {
+        const double nanoseconds = stage.items > 0 ? 1e9 * stage.seconds / static_cast<double>(stage.items) : 0.0;
+        text += fmt::format("  {:<20} {:>11} {:>18} {:>10.3f} {:>9.1f}\n", stage.name, stage.launches,
+                            format_count(stage.items), stage.seconds, nanoseconds);
+    }
+    return text;
+}
+
+std::string report_json(const RenderReport& report) {
+    using Json = nlohmann::ordered_json;
+    const RenderStats& stats = report.stats;
+    Json json;
+    json["version"] = WAVELOBE_VERSION;
+    json["scene"] = report.scene_path;
+    json["device"] = report.device;
+    json["threads"] = report.threads;
+    json["width"] = report.width;
+    json["height"] = report.height;
+    json["spp"] = report.samples_per_pixel;
+    json["seed"] = report.seed;
+    json["complete"] = report.complete;
+    json["render_seconds"] = stats.render_seconds;
+    json["setup_seconds"] = stats.setup_seconds();
+    json["samples"] = stats.samples;
+    json["samples_per_second"] = samples_per_second(stats);
+    json["nan_samples"] = stats.nan_samples;
+    json["nan_examples"] = Json::array();
+    for (const NonFiniteSample& sample : stats.nan_examples) {
+        json["nan_examples"].push_back({{"x", sample.x}, {"y", sample.y}, {"sample", sample.sample}});
+    }
+    json["setup"] = stats.setup_parts;
+    json["rays"] = stats.rays;
+    json["features"] = stats.features;
+    json["device_bytes"] = stats.device_bytes;
+    json["stages"] = Json::array();
+    for (const StageStats& stage : stats.stages) {
+        json["stages"].push_back({{"name", stage.name},
+                                  {"launches", stage.launches},
+                                  {"items", stage.items},
+                                  {"seconds", stage.seconds}});
+    }
+    // Paths need not be UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string non_finite_warning(const RenderStats& stats) {
+    if (stats.nan_samples == 0) return {};
+    std::string text = fmt::format("{} samples were NaN or infinite and are left out of the picture", stats.nan_samples);
+    const char* separator = "; the first: ";
+    for (const NonFiniteSample& sample : stats.nan_examples) {
+        text += fmt::format("{}pixel ({}, {}) sample {}", separator, sample.x, sample.y, sample.sample);
+        separator = ", ";
+    }
+    return text;
+}
+
+}  // namespace wavelobe

@@ -1,0 +1,76 @@
+#include "render/device_buffers.h"
+
+#include "shared/block.h"
+
+namespace wavelobe {
+namespace {
+
+// Spatial splits and their time pay on scenes of this size; larger ones are built the fast way.
+constexpr std::size_t best_quality_triangles = 400000;
+
+// Measured on scenes of 100 thousand to 10 million triangles; used before the hierarchy exists.
+constexpr std::uint64_t hierarchy_bytes_per_primitive = 110;
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+}  // namespace
+
+Bvh build_scene_bvh(const DeviceScene& scene, int threads) {
+    const BvhQuality quality = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
+    Bvh bvh = build_bvh(scene.triangles, scene.analytic_bounds, quality, threads);
+    // Stages read block 0 in lanes that hit no triangle.
+    if (bvh.blocks.empty()) bvh.blocks.emplace_back();
+    return bvh;
+}
+
+std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
+    const std::uint64_t film =
+        std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height * sizeof(FilmPixel);
+    return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
+           bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.analytics) +
+           bytes_of(scene.materials) + bytes_of(scene.textures) + bytes_of(scene.texels) + bytes_of(scene.lights) +
+           bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
+}
+
+void DeviceBuffers::insert(const std::string& name, Buffer buffer) {
+    const auto [entry, added] = buffers_.emplace(name, std::move(buffer));
+    if (added) table_[name] = &entry->second;
+}
+
+std::uint64_t DeviceBuffers::total_bytes() const {
+    std::uint64_t sum = 0;
+    for (const auto& [name, buffer] : buffers_) sum += buffer.bytes();
+    return sum;
+}
+
+void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, std::size_t block_count,
+                           std::size_t words_per_block) {
+    add("bvh_nodes", bvh.nodes);
+    add("triangle_blocks", bvh.blocks);
+    add("analytic_order", bvh.analytic_order);
+    // An empty scene still has kernels that name these.
+    add("primitive_shapes", scene.primitive_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.primitive_shapes);
+    add("shapes", scene.shapes.empty() ? std::vector<DeviceShape>(1) : scene.shapes);
+    add("materials", scene.materials.empty() ? std::vector<DeviceMaterial>(1) : scene.materials);
+    add("normals", scene.normals);
+    add("uvs", scene.uvs);
+    add("analytics", scene.analytics);
+    add("textures", scene.textures);
+    add("texels", scene.texels.empty() && !scene.textures.empty() ? std::vector<float>(1) : scene.texels);
+    add("lights", scene.lights);
+    add("environment", scene.environment);
+    add("environment_texels", scene.environment_texels);
+    add("environment_alias", scene.environment_alias);
+    add("environment_density", scene.environment_density);
+    add("filter_table", scene.filter_table);
+    add("parameters", std::vector<RenderParameters>{scene.parameters});
+    const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
+    insert("film", Buffer(device_, pixels * sizeof(FilmPixel)));
+    insert("headers", Buffer(device_, block_count * sizeof(BlockHeader)));
+    insert("blocks", Buffer(device_, block_count * words_per_block * sizeof(float)));
+}
+
+}  // namespace wavelobe

@@ -1,0 +1,44 @@
+// The buffers of a render, by the names kernels give their parameters.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "cl/program.h"
+#include "render/flatten.h"
+
+namespace wavelobe {
+
+Bvh build_scene_bvh(const DeviceScene& scene, int threads);
+
+// What the buffers of a scene will take, the hierarchy estimated from the number of primitives.
+std::uint64_t estimate_device_bytes(const DeviceScene& scene);
+
+class DeviceBuffers {
+public:
+    explicit DeviceBuffers(const Device& device) : device_(device) {}
+
+    void upload(const DeviceScene& scene, const Bvh& bvh, std::size_t block_count, std::size_t words_per_block);
+
+    const BufferTable& table() const { return table_; }
+    std::uint64_t total_bytes() const;
+
+    template <class T>
+    std::span<T> view(const std::string& name) const {
+        return buffers_.at(name).view<T>();
+    }
+
+private:
+    // Arrays without elements get no buffer: no kernel of the scene asks for them.
+    template <class T>
+    void add(const std::string& name, const std::vector<T>& values) {
+        if (!values.empty()) insert(name, Buffer::of<T>(device_, values));
+    }
+    void insert(const std::string& name, Buffer buffer);
+
+    const Device& device_;
+    std::map<std::string, Buffer> buffers_;
+    BufferTable table_;
+};
+
+}  // namespace wavelobe

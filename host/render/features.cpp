@@ -1,0 +1,216 @@
+#include "render/features.h"
+
+#include <array>
+#include <sstream>
+
+#include "shared/block.h"
+#include "shared/materials.h"
+
+namespace wavelobe {
+namespace {
+
+struct LobeEntry {
+    const char* name;
+    const char* macro;
+    std::uint32_t lobe_class;
+};
+
+constexpr std::array<LobeEntry, LOBE_COUNT> lobe_list = {{
+#define LOBE(name, NAME, class_name) {#name, #NAME, LOBE_CLASS_##class_name},
+#include "bsdf/lobes.def"
+#undef LOBE
+}};
+
+enum class Reach { SURFACE, ENVIRONMENT, DELTA };
+
+struct LightEntry {
+    const char* name;
+    const char* macro;
+    Reach reach;
+};
+
+constexpr std::array<LightEntry, LIGHT_KIND_COUNT> light_list = {{
+#define LIGHT(name, NAME, reach) {#name, #NAME, Reach::reach},
+#include "lights/lights.def"
+#undef LIGHT
+}};
+
+bool has_bit(std::uint32_t mask, std::size_t bit) { return ((mask >> bit) & 1U) != 0; }
+
+bool has_reach(const FeatureSet& features, Reach reach) {
+    for (std::size_t i = 0; i < light_list.size(); ++i) {
+        if (has_bit(features.light_kinds, i) && light_list[i].reach == reach) return true;
+    }
+    return false;
+}
+
+class SourceWriter {
+public:
+    void define(const std::string& name, long value) { text_ << "#define " << name << " " << value << "\n"; }
+    void define_unsigned(const std::string& name, long value) { text_ << "#define " << name << " " << value << "u\n"; }
+    void include(const std::string& path) { text_ << "#include \"" << path << "\"\n"; }
+    void begin_list(const std::string& name) { text_ << "#define " << name << "(X)"; }
+    void list_item(const char* name, const char* macro) { text_ << " X(" << name << ", " << macro << ")"; }
+    void end_list() { text_ << "\n"; }
+    std::string text() const { return text_.str(); }
+
+private:
+    std::ostringstream text_;
+};
+
+void write_macros(SourceWriter& out, const FeatureSet& f) {
+    out.define("HAS_TEXTURES", f.textures);
+    out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
+    out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
+    out.define("HAS_UVS", f.uvs);
+    out.define("HAS_ANALYTIC", f.analytic);
+    out.define("HAS_ANISOTROPY", f.anisotropy);
+    out.define("HAS_TRANSMISSION", f.transmission);
+    out.define("HAS_BACK_SIDES", f.back_sides);
+    out.define("HAS_LOBE_CHOICE", f.lobe_choice);
+    out.define("HAS_MIXTURE", f.mixture);
+    out.define("HAS_GGX", f.ggx);
+    out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
+    out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
+    out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
+    out.define("HAS_LIGHTS", f.light_count > 0);
+    out.define("HAS_SURFACE_LIGHTS", f.has_surface_lights());
+    out.define("HAS_ENVIRONMENT", f.has_environment());
+    // One light needs no choice; of several the kernels are told the number at run time.
+    out.define("LIGHT_COUNT", std::min(f.light_count, 2));
+    out.define_unsigned("BVH_STACK", f.bvh_stack);
+}
+
+void write_lobes(SourceWriter& out, const FeatureSet& f) {
+    for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+        out.define_unsigned(std::string("LOBE_") + lobe_list[i].macro, static_cast<long>(i));
+    }
+    for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+        if (has_bit(f.lobes, i)) out.include(std::string("bsdf/") + lobe_list[i].name + ".h");
+    }
+    constexpr std::array<const char*, 3> lists = {"SCENE_DELTA_LOBES", "SCENE_GLOSSY_LOBES", "SCENE_DIFFUSE_LOBES"};
+    for (std::uint32_t lobe_class = 0; lobe_class < lists.size(); ++lobe_class) {
+        out.begin_list(lists[lobe_class]);
+        for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+            if (has_bit(f.lobes, i) && lobe_list[i].lobe_class == lobe_class) {
+                out.list_item(lobe_list[i].name, lobe_list[i].macro);
+            }
+        }
+        out.end_list();
+    }
+}
+
+void write_light_list(SourceWriter& out, const FeatureSet& f, const char* name, const Reach* reach) {
+    out.begin_list(name);
+    for (std::size_t i = 0; i < light_list.size(); ++i) {
+        if (has_bit(f.light_kinds, i) && (reach == nullptr || light_list[i].reach == *reach)) {
+            out.list_item(light_list[i].name, light_list[i].macro);
+        }
+    }
+    out.end_list();
+}
+
+void write_lights(SourceWriter& out, const FeatureSet& f) {
+    for (std::size_t i = 0; i < light_list.size(); ++i) {
+        out.define_unsigned(std::string("LIGHT_") + light_list[i].macro, static_cast<long>(i));
+        out.define(std::string("HAS_LIGHT_") + light_list[i].macro, has_bit(f.light_kinds, i));
+    }
+    if (f.light_count == 0) return;
+    for (std::size_t i = 0; i < light_list.size(); ++i) {
+        if (has_bit(f.light_kinds, i)) out.include(std::string("lights/") + light_list[i].name + ".h");
+    }
+    constexpr Reach surface = Reach::SURFACE;
+    constexpr Reach environment = Reach::ENVIRONMENT;
+    write_light_list(out, f, "SCENE_LIGHTS", nullptr);
+    write_light_list(out, f, "SCENE_SURFACE_LIGHTS", &surface);
+    write_light_list(out, f, "SCENE_ENVIRONMENT_LIGHTS", &environment);
+}
+
+}  // namespace
+
+std::uint32_t lobe_class(std::uint32_t lobe) { return lobe_list[lobe].lobe_class; }
+
+bool FeatureSet::has_lobe_class(std::uint32_t wanted) const {
+    for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+        if (has_bit(lobes, i) && lobe_list[i].lobe_class == wanted) return true;
+    }
+    return false;
+}
+
+bool FeatureSet::has_surface_lights() const { return has_reach(*this, Reach::SURFACE); }
+bool FeatureSet::has_environment() const { return has_reach(*this, Reach::ENVIRONMENT); }
+
+std::vector<std::string> FeatureSet::names() const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+        if (has_bit(lobes, i)) out.push_back(std::string("lobe:") + lobe_list[i].name);
+    }
+    for (std::size_t i = 0; i < light_list.size(); ++i) {
+        if (has_bit(light_kinds, i)) out.push_back(std::string("light:") + light_list[i].name);
+    }
+    const auto add = [&out](bool present, const char* name) {
+        if (present) out.emplace_back(name);
+    };
+    add(light_count > 1, "light_choice");
+    add(textures, "textures");
+    add(textured_emitters, "textured_emitters");
+    add(smooth_normals, "smooth_normals");
+    add(uvs, "uvs");
+    add(analytic, "analytic_shapes");
+    add(anisotropy, "anisotropy");
+    add(transmission, "transmission");
+    add(back_sides, "back_sides");
+    add(lobe_choice, "lobe_choice");
+    add(mixture, "mixture");
+    add(ggx, "ggx");
+    add(beckmann, "beckmann");
+    add(hide_emitters, "hide_emitters");
+    return out;
+}
+
+std::vector<std::string> FeatureSet::stages() const {
+    std::vector<std::string> out = {"generate", "intersect_closest", "sort_paths"};
+    const auto add = [&out](bool present, const char* name) {
+        if (present) out.emplace_back(name);
+    };
+    const bool glossy = has_lobe_class(LOBE_CLASS_GLOSSY);
+    const bool diffuse = has_lobe_class(LOBE_CLASS_DIFFUSE);
+    add(has_environment(), "shade_escaped");
+    add(has_surface_lights(), "shade_emitted");
+    add(has_lobe_class(LOBE_CLASS_DELTA), "scatter_delta");
+    add(glossy, "scatter_glossy");
+    add(diffuse, "scatter_diffuse");
+    add(light_count > 0 && (glossy || diffuse), "intersect_shadow");
+    out.emplace_back("accumulate");
+    return out;
+}
+
+std::string program_source(const FeatureSet& features, int lanes, int block_slots, int block_samples) {
+    SourceWriter out;
+    out.define("LANES", lanes);
+    out.define_unsigned("BLOCK_SLOTS", block_slots);
+    out.define_unsigned("BLOCK_SAMPLES", block_samples);
+    write_macros(out, features);
+    write_lobes(out, features);
+    write_lights(out, features);
+    for (const std::string& stage : features.stages()) out.include("stages/" + stage + ".cl");
+    return out.text();
+}
+
+std::size_t block_words(const FeatureSet& features, int block_slots, int block_samples) {
+    const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
+    constexpr std::size_t fields_without_origin = RAY_FIELDS - 3;
+    const std::size_t traced = features.analytic ? RAY_FIELDS : fields_without_origin;
+    std::size_t queues = 0;
+    if (features.has_environment()) ++queues;
+    if (features.has_surface_lights()) ++queues;
+    for (const std::uint32_t c : {LOBE_CLASS_DELTA, LOBE_CLASS_GLOSSY, LOBE_CLASS_DIFFUSE}) {
+        if (features.has_lobe_class(c)) ++queues;
+    }
+    return stride * (RAY_FIELDS + queues * traced + SHADOW_FIELDS) +
+           std::size_t{3} * TILE_PIXELS * static_cast<std::size_t>(block_samples);
+}
+
+}  // namespace wavelobe

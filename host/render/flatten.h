@@ -1,0 +1,52 @@
+// Turns the neutral scene into the arrays that kernels read.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/bvh.h"
+#include "render/features.h"
+#include "scene/scene.h"
+#include "shared/lights.h"
+#include "shared/scene.h"
+
+namespace wavelobe {
+
+// Device structs share names with the neutral ones; here they carry a prefix.
+using DeviceMaterial = ::Material;
+using DeviceTexture = ::Texture;
+using DeviceShape = ::Shape;
+
+struct DeviceScene {
+    FeatureSet features;
+    RenderParameters parameters{};
+
+    // surfaces
+    std::vector<TriangleVertices> triangles;  // for the hierarchy; released once it is built
+    std::vector<Bounds> analytic_bounds;
+    std::vector<std::uint32_t> primitive_shapes;
+    std::vector<DeviceShape> shapes;
+    std::vector<float> normals;
+    std::vector<float> uvs;
+    std::vector<Analytic> analytics;
+
+    // appearance
+    std::vector<DeviceMaterial> materials;
+    std::vector<DeviceTexture> textures;
+    std::vector<float> texels;
+
+    // light
+    std::vector<Light> lights;
+    std::vector<Environment> environment;  // none or one
+    std::vector<float> environment_texels;
+    std::vector<AliasEntry> environment_alias;
+    std::vector<float> environment_density;
+
+    std::vector<float> filter_table;
+};
+
+// Only what a surface or light uses gets into the arrays and the feature set.
+// Throws InputError where a scene cannot be represented.
+DeviceScene flatten_scene(const Scene& scene);
+
+}  // namespace wavelobe

@@ -1,0 +1,41 @@
+// Materials and textures as the kernels see them.
+#pragma once
+
+#include <map>
+
+#include "render/flatten.h"
+
+namespace wavelobe {
+
+// Fills materials, textures and texels of a device scene, each the first time it is asked for, so that what nothing uses
+// takes no memory and adds no feature.
+class MaterialFlattener {
+public:
+    MaterialFlattener(const Scene& scene, DeviceScene& out) : scene_(scene), out_(out) {}
+
+    // Index of the device material, or WAVELOBE_NONE for index -1.
+    std::uint32_t add(int material);
+    std::uint32_t lobes(std::uint32_t device_material) const;
+
+    TexturedRgb rgb(const Parameter& parameter);
+
+private:
+    TexturedFloat scalar(const Parameter& parameter);
+    std::uint32_t texture(const std::shared_ptr<const Texture>& texture);
+    void fill(DeviceMaterial& out, const Diffuse& m);
+    void fill(DeviceMaterial& out, const Conductor& m);
+    void fill(DeviceMaterial& out, const RoughConductor& m);
+    void fill(DeviceMaterial& out, const Dielectric& m);
+    void fill(DeviceMaterial& out, const ThinDielectric& m);
+    void fill(DeviceMaterial& out, const RoughDielectric& m);
+    void fill(DeviceMaterial& out, const Plastic& m);
+    void fill(DeviceMaterial& out, const Phong& m);
+    void fill_roughness(DeviceMaterial& out, const Parameter& alpha_u, const Parameter& alpha_v, Distribution distribution);
+
+    const Scene& scene_;
+    DeviceScene& out_;
+    std::map<int, std::uint32_t> materials_;
+    std::map<const Texture*, std::uint32_t> textures_;
+};
+
+}  // namespace wavelobe

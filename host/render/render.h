@@ -1,0 +1,103 @@
+// Renders a scene: the host's side of the wavefront.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cl/device.h"
+#include "scene/scene.h"
+
+namespace wavelobe {
+
+struct RenderSettings {
+    int samples_per_pixel = 16;
+    std::uint32_t seed = 0;
+    int block_slots = 0;   // paths a block holds at once, a multiple of 16; 0: the default
+    int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
+};
+
+struct StageStats {
+    std::string name;
+    std::uint64_t launches = 0;
+    std::uint64_t items = 0;  // paths, rays or samples that went through
+    double seconds = 0.0;     // OpenCL event times
+};
+
+// A sample that came out as NaN or infinite: it is left out of the picture and named here.
+struct NonFiniteSample {
+    int x = 0;
+    int y = 0;
+    std::uint32_t sample = 0;
+};
+
+struct RenderStats {
+    std::map<std::string, double> setup_parts;  // seconds: parse, bvh, tables, program_build, first_launches
+    double render_seconds = 0.0;                // without set-up
+    std::uint64_t samples = 0;
+    std::uint64_t nan_samples = 0;
+    std::vector<NonFiniteSample> nan_examples;  // the first few
+    std::map<std::string, std::uint64_t> rays;  // camera, bounce, shadow
+    std::vector<std::string> features;          // what the scene made the program contain
+    std::vector<StageStats> stages;
+    std::uint64_t device_bytes = 0;             // of all buffers
+
+    double setup_seconds() const {
+        double sum = 0.0;
+        for (const auto& [part, seconds] : setup_parts) sum += seconds;
+        return sum;
+    }
+};
+
+// Linear RGB of the crop window, row by row from the top.
+struct Image {
+    int width = 0;
+    int height = 0;
+    std::vector<float> rgb;
+};
+
+struct Progress {
+    std::uint64_t samples_done = 0;
+    std::uint64_t samples_total = 0;
+    double seconds = 0.0;  // of rendering
+};
+
+// Called between waves; returning false stops rendering with the samples made so far.
+using ProgressCallback = std::function<bool(const Progress&)>;
+
+// What a scene needs, known without building any kernel.
+struct SceneSummary {
+    std::uint64_t triangles = 0;
+    std::uint64_t analytic_shapes = 0;
+    std::uint64_t lights = 0;
+    std::vector<std::string> features;  // lobes, lights, textures ... compiled for it
+    std::uint64_t device_bytes = 0;
+};
+
+class Renderer {
+public:
+    // Builds acceleration structure, tables and kernels. Throws InputError if the scene cannot be rendered (say, memory),
+    // ClError if OpenCL fails.
+    Renderer(const Device& device, const Scene& scene, const RenderSettings& settings);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // Returns true when every sample was made, false when the callback stopped it.
+    bool render(const ProgressCallback& progress = {});
+
+    // Mean of the finite samples made so far; a pixel without samples is black.
+    Image image() const;
+    const RenderStats& stats() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+SceneSummary summarize(const Scene& scene);
+
+}  // namespace wavelobe

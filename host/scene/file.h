@@ -1,0 +1,11 @@
+// Whole files in memory.
+#pragma once
+
+#include <string>
+
+namespace wavelobe {
+
+// Throws InputError naming the file when it is missing or cannot be read.
+std::string read_file(const std::string& path);
+
+}  // namespace wavelobe

@@ -1,0 +1,190 @@
+// The BSDF plugins.
+#include <array>
+
+#include "scene/conductors.h"
+#include "scene/mitsuba/query.h"
+#include "scene/mitsuba/values.h"
+
+namespace wavelobe::mitsuba {
+
+namespace {
+
+enum class Sides { front, both };
+
+Bsdf make(Query& query, MaterialModel model, Sides sides) {
+    auto material = std::make_shared<const Material>(Material{std::move(model), query.object().id});
+    const bool both = sides == Sides::both;
+    return {material, both ? material : nullptr, both};
+}
+
+Parameter reflectance(Query& query, const std::string& name, double otherwise) {
+    return query.parameter(name, otherwise, ColourUse::reflectance);
+}
+
+struct Index {
+    Rgb eta{0.0F};
+    Rgb k{1.0F};
+};
+
+Index conductor_index(Query& query) {
+    const std::string material = query.text("material", "none");
+    const Index given{query.colour("eta", 0.0, ColourUse::unbounded), query.colour("k", 1.0, ColourUse::unbounded)};
+    if (material == "none") return given;
+    if (query.has("eta") || query.has("k"))
+        query.fault("both `material` and `eta`, `k` are given", "keep one of the two");
+    const NamedConductor* named = find_conductor(material);
+    if (named == nullptr) {
+        query.fault_at("material", "`" + material + "` is no conductor known here; expected one of " + quoted_list(conductor_names()),
+                       suggestion(material, conductor_names()));
+        return {};
+    }
+    return {Rgb(named->eta[0], named->eta[1], named->eta[2]), Rgb(named->k[0], named->k[1], named->k[2])};
+}
+
+float relative_index(Query& query, const std::string& interior) {
+    const double inside = query.refractive_index("int_ior", interior);
+    return static_cast<float>(inside / query.refractive_index("ext_ior", "air"));
+}
+
+struct Roughness {
+    Parameter alpha_u, alpha_v;
+    Distribution distribution = Distribution::beckmann;
+};
+
+Roughness roughness(Query& query) {
+    Roughness result;
+    result.distribution = query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
+    query.boolean("sample_visible", true);
+    const bool two = query.has("alpha_u") || query.has("alpha_v");
+    if (two && !(query.has("alpha_u") && query.has("alpha_v")))
+        query.fault("only one of `alpha_u` and `alpha_v` is given", "give both, or `alpha` alone");
+    if (two && query.has("alpha")) query.fault("`alpha` is given along with `alpha_u` and `alpha_v`", "keep one of the two forms");
+    // Smoother surfaces are clamped, as the microfacet models of Mitsuba are.
+    const auto alpha_of = [&](const std::string& name) {
+        Parameter alpha = query.scalar_parameter(name, 0.1, not_negative);
+        alpha.value = glm::max(alpha.value, Rgb(1e-4F));
+        return alpha;
+    };
+    const Parameter alpha = alpha_of("alpha");
+    const Parameter alpha_u = alpha_of("alpha_u");
+    const Parameter alpha_v = alpha_of("alpha_v");
+    result.alpha_u = two ? alpha_u : alpha;
+    result.alpha_v = two ? alpha_v : alpha;
+    return result;
+}
+
+Bsdf read_diffuse(Query& query) { return make(query, Diffuse{reflectance(query, "reflectance", 0.5)}, Sides::front); }
+
+Bsdf read_conductor(Query& query) {
+    const Index index = conductor_index(query);
+    return make(query, Conductor{index.eta, index.k, reflectance(query, "specular_reflectance", 1.0)}, Sides::front);
+}
+
+Bsdf read_rough_conductor(Query& query) {
+    const Index index = conductor_index(query);
+    const Roughness rough = roughness(query);
+    return make(query,
+                RoughConductor{index.eta, index.k, reflectance(query, "specular_reflectance", 1.0), rough.alpha_u,
+                               rough.alpha_v, rough.distribution},
+                Sides::front);
+}
+
+Bsdf read_dielectric(Query& query) {
+    const float eta = relative_index(query, "bk7");
+    const Parameter reflected = reflectance(query, "specular_reflectance", 1.0);
+    return make(query, Dielectric{eta, reflected, reflectance(query, "specular_transmittance", 1.0)}, Sides::both);
+}
+
+Bsdf read_thin_dielectric(Query& query) {
+    const float eta = relative_index(query, "bk7");
+    const Parameter reflected = reflectance(query, "specular_reflectance", 1.0);
+    return make(query, ThinDielectric{eta, reflected, reflectance(query, "specular_transmittance", 1.0)}, Sides::both);
+}
+
+Bsdf read_rough_dielectric(Query& query) {
+    const float eta = relative_index(query, "bk7");
+    if (eta == 1.0F)
+        query.fault("the indices of refraction inside and outside are equal", "let `int_ior` and `ext_ior` differ");
+    const Parameter reflected = reflectance(query, "specular_reflectance", 1.0);
+    const Parameter transmitted = reflectance(query, "specular_transmittance", 1.0);
+    const Roughness rough = roughness(query);
+    return make(query, RoughDielectric{eta, reflected, transmitted, rough.alpha_u, rough.alpha_v, rough.distribution},
+                Sides::both);
+}
+
+Bsdf read_plastic(Query& query) {
+    const float eta = relative_index(query, "polypropylene");
+    const Parameter diffuse = reflectance(query, "diffuse_reflectance", 0.5);
+    const Parameter specular = reflectance(query, "specular_reflectance", 1.0);
+    return make(query, Plastic{eta, diffuse, specular, query.boolean("nonlinear", false)}, Sides::front);
+}
+
+// A plugin of Mitsuba 0.x, whose spelling of the names is accepted next to today's.
+Bsdf read_phong(Query& query) {
+    const auto either = [&](const std::string& name, const std::string& old_name, double otherwise) {
+        if (query.has(name) && query.has(old_name))
+            query.fault("both `" + name + "` and `" + old_name + "` are given", "keep one of the two");
+        const Parameter old_spelling = reflectance(query, old_name, otherwise);
+        const Parameter new_spelling = reflectance(query, name, otherwise);
+        return query.has(old_name) ? old_spelling : new_spelling;
+    };
+    const Parameter diffuse = either("diffuse_reflectance", "diffuseReflectance", 0.5);
+    const Parameter specular = either("specular_reflectance", "specularReflectance", 0.2);
+    return make(query, Phong{diffuse, specular, query.scalar_parameter("exponent", 30.0, not_negative)}, Sides::front);
+}
+
+Bsdf read_twosided(Query& query) {
+    query.boolean("allow_transmission", false);
+    const std::vector<const Child*> nested = query.children("bsdf");
+    if (nested.empty() || nested.size() > 2) {
+        query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one for both sides, or one for each", "");
+        return {};
+    }
+    const Bsdf front = read_bsdf(query.context(), *nested.front()->object);
+    const Bsdf back = read_bsdf(query.context(), *nested.back()->object);
+    if (front.transmissive || back.transmissive)
+        query.fault("holds a BSDF that transmits light; only opaque ones can be nested",
+                    "use the dielectric without `twosided`: it has two sides already");
+    return {front.front, back.front, false};
+}
+
+struct Plugin {
+    const char* name;
+    Bsdf (*read)(Query&);
+};
+constexpr std::array<Plugin, 9> plugins{{
+    {"conductor", read_conductor},
+    {"dielectric", read_dielectric},
+    {"diffuse", read_diffuse},
+    {"phong", read_phong},
+    {"plastic", read_plastic},
+    {"roughconductor", read_rough_conductor},
+    {"roughdielectric", read_rough_dielectric},
+    {"thindielectric", read_thin_dielectric},
+    {"twosided", read_twosided},
+}};
+
+}  // namespace
+
+Bsdf read_bsdf(Context& context, const Object& object) {
+    const auto known = context.bsdfs.find(&object);
+    if (known != context.bsdfs.end()) return known->second;
+    Bsdf bsdf;
+    if (const auto* plugin = find_plugin(context, object, plugins)) {
+        Query query(context, object);
+        bsdf = plugin->read(query);
+        query.finish();
+    }
+    return context.bsdfs[&object] = bsdf;
+}
+
+Bsdf default_bsdf(Context& context, bool emitter) {
+    auto& material = emitter ? context.black_material : context.default_material;
+    if (material == nullptr)
+        material = std::make_shared<const Material>(Material{Diffuse{Parameter{Rgb(emitter ? 0.0F : 0.5F), nullptr}}, ""});
+    return {material, nullptr, false};
+}
+
+std::vector<std::string> bsdf_types() { return names_of(plugins); }
+
+}  // namespace wavelobe::mitsuba

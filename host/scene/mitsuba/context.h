@@ -1,0 +1,84 @@
+// What the plugins of a scene share while the neutral scene is built.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/mitsuba/document.h"
+#include "scene/scene.h"
+
+namespace wavelobe::mitsuba {
+
+// What a <bsdf> stands for before a shape uses it: only used materials enter the scene.
+struct Bsdf {
+    std::shared_ptr<const Material> front;
+    std::shared_ptr<const Material> back;  // null: black
+    bool transmissive = false;
+};
+
+struct Context {
+    Context(const Document& source, Scene& target, Faults& found) : document(source), scene(target), faults(found) {}
+
+    const Document& document;
+    Scene& scene;
+    Faults& faults;
+
+    // Objects with several references are built once.
+    std::map<const Object*, Bsdf> bsdfs;
+    std::map<const Object*, std::shared_ptr<const Texture>> textures;
+    std::map<const Object*, std::shared_ptr<const Texture>> scalar_textures;
+    std::map<std::string, std::shared_ptr<const Texture>> bitmaps;  // by file and options
+    std::map<const Material*, int> material_indices;
+    std::shared_ptr<const Material> default_material, black_material;
+
+    int environments = 0;
+    int sensors = 0;
+    int integrators = 0;
+};
+
+// ---- textures.cpp -----------------------------------------------------------------------------------
+
+enum class TextureUse { colour, scalar };
+// Null when the texture is refused; the fault is on record.
+std::shared_ptr<const Texture> read_texture(Context& context, const Object& object, TextureUse use);
+std::vector<std::string> texture_types();
+
+// ---- bsdfs.cpp --------------------------------------------------------------------------------------
+
+Bsdf read_bsdf(Context& context, const Object& object);
+// Of a shape without one; what emits is black otherwise.
+Bsdf default_bsdf(Context& context, bool emitter);
+std::vector<std::string> bsdf_types();
+
+// ---- shapes.cpp -------------------------------------------------------------------------------------
+
+void read_shape(Context& context, const Object& object);
+std::vector<std::string> shape_types();
+
+// ---- emitters.cpp -----------------------------------------------------------------------------------
+
+void read_emitter(Context& context, const Object& object);
+std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& object);
+std::vector<std::string> emitter_types();
+
+// ---- sensor.cpp -------------------------------------------------------------------------------------
+
+void read_sensor(Context& context, const Object& object);
+std::vector<std::string> sensor_types();
+std::vector<std::string> sampler_types();
+
+// ---- film.cpp ---------------------------------------------------------------------------------------
+
+Film read_film(Context& context, const Object& object);
+std::vector<std::string> film_types();
+std::vector<std::string> filter_types();
+
+// ---- integrator.cpp ---------------------------------------------------------------------------------
+
+void read_integrator(Context& context, const Object& object);
+std::vector<std::string> integrator_types();
+
+}  // namespace wavelobe::mitsuba

@@ -1,0 +1,128 @@
+// The emitter plugins.
+#include <array>
+
+#include "scene/image.h"
+#include "scene/mitsuba/query.h"
+
+namespace wavelobe::mitsuba {
+
+namespace {
+
+// How often a light is chosen does not change the picture, except for lights that are never chosen.
+void accept_sampling_weight(Query& query) {
+    const double weight = query.real("sampling_weight", 1.0, not_negative);
+    if (weight != 1.0) query.warn("`sampling_weight` is ignored");
+}
+
+Rgb emission(Query& query, const std::string& name) { return query.colour(name, 1.0, ColourUse::emission); }
+
+void count_environment(Query& query) {
+    if (++query.context().environments > 1)
+        query.fault("the scene has a `constant` or `envmap` emitter already", "keep one of them");
+}
+
+std::optional<Emitter> read_constant(Query& query) {
+    count_environment(query);
+    query.transform("to_world");
+    return ConstantEmitter{emission(query, "radiance")};
+}
+
+std::optional<Emitter> read_envmap(Query& query) {
+    count_environment(query);
+    EnvironmentMap map;
+    const std::string path = query.file("filename");
+    map.scale = static_cast<float>(query.real("scale", 1.0, not_negative));
+    map.to_world = glm::mat4(query.transform("to_world"));
+    query.boolean("mis_compensation", false);
+    if (path.empty()) return std::nullopt;
+    try {
+        map.image = load_image(path, Transfer::of_format);
+        pad_image(map.image, 2, 3);
+    } catch (const InputError& error) {
+        query.context().faults.add(error, query.object().place, query.object().label());
+        return std::nullopt;
+    }
+    return map;
+}
+
+std::optional<Emitter> read_point(Query& query) {
+    if (query.has("position") && query.has("to_world"))
+        query.fault("both `position` and `to_world` are given", "keep one of the two");
+    const glm::dmat4 to_world = query.transform("to_world");
+    const glm::dvec3 position = query.triple("position", glm::dvec3(to_world[3]));
+    return PointEmitter{glm::vec3(position), emission(query, "intensity")};
+}
+
+std::optional<Emitter> read_spot(Query& query) {
+    SpotEmitter spot;
+    spot.to_world = glm::mat4(query.transform("to_world"));
+    spot.intensity = emission(query, "intensity");
+    const double cutoff = query.real("cutoff_angle", 20.0, Range{0.0, 180.0, true});
+    const double beam = query.real("beam_width", cutoff * 0.75, Range{0.0, 180.0, false});
+    if (beam > cutoff) query.fault_at("beam_width", "`beam_width` is above `cutoff_angle`", "expected a smaller angle");
+    spot.cutoff_degrees = static_cast<float>(cutoff);
+    spot.beam_width_degrees = static_cast<float>(beam);
+    if (query.has("texture")) {
+        query.fault_at("texture", "spot lights with a projection texture are not supported", "remove the texture");
+        query.accept({"texture"});
+        query.children("texture");
+    }
+    return spot;
+}
+
+std::optional<Emitter> read_directional(Query& query) {
+    if (query.has("direction") && query.has("to_world"))
+        query.fault("both `direction` and `to_world` are given", "keep one of the two");
+    const glm::dvec3 along_z(query.transform("to_world")[2]);
+    const glm::dvec3 direction = query.triple("direction", along_z);
+    if (direction == glm::dvec3(0.0)) query.fault_at("direction", "the direction is zero", "give the way the light travels");
+    return DirectionalEmitter{glm::vec3(glm::normalize(direction)), emission(query, "irradiance")};
+}
+
+struct Plugin {
+    const char* name;
+    std::optional<Emitter> (*read)(Query&);  // null: nested in a shape
+};
+constexpr std::array<Plugin, 6> plugins{{
+    {"area", nullptr},
+    {"constant", read_constant},
+    {"directional", read_directional},
+    {"envmap", read_envmap},
+    {"point", read_point},
+    {"spot", read_spot},
+}};
+
+}  // namespace
+
+void read_emitter(Context& context, const Object& object) {
+    const auto* plugin = find_plugin(context, object, plugins);
+    if (plugin == nullptr) return;
+    Query query(context, object);
+    if (plugin->read == nullptr) return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
+    std::optional<Emitter> emitter = plugin->read(query);
+    accept_sampling_weight(query);
+    query.finish();
+    if (emitter) context.scene.emitters.push_back(std::move(*emitter));
+}
+
+std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& object) {
+    const auto* plugin = find_plugin(context, object, plugins);
+    if (plugin == nullptr) return std::nullopt;
+    Query query(context, object);
+    if (plugin->read != nullptr) {
+        query.fault("only an `area` emitter can be nested in a shape", "move it out of the shape");
+        return std::nullopt;
+    }
+    if (query.has("to_world")) {
+        query.fault_at("to_world", "an area light has no transform of its own", "transform its shape");
+        query.accept({"to_world"});
+    }
+    AreaEmitter emitter{query.parameter("radiance", 1.0, ColourUse::emission)};
+    accept_sampling_weight(query);
+    query.finish();
+    return emitter;
+}
+
+std::vector<std::string> emitter_types() { return names_of(plugins); }
+
+}  // namespace wavelobe::mitsuba

@@ -1,0 +1,28 @@
+// The operations inside a <transform>.
+#pragma once
+
+#include <optional>
+
+#include <glm/glm.hpp>
+
+namespace wavelobe::mitsuba {
+
+glm::dmat4 translation(const glm::dvec3& offset);
+glm::dmat4 scaling(const glm::dvec3& factors);
+// About an axis of any non-zero length, right-handed.
+glm::dmat4 rotation(const glm::dvec3& axis, double degrees);
+// +z towards the target, +y near `up` (zero: any), +x to the left. Nothing when the directions do not span space.
+std::optional<glm::dmat4> look_at(const glm::dvec3& origin, const glm::dvec3& target, glm::dvec3 up);
+
+// Two unit vectors that complete the unit vector `n` to a right-handed frame (s, t, n).
+struct Tangents {
+    glm::dvec3 s, t;
+};
+Tangents coordinate_system(const glm::dvec3& n);
+
+// The linear part is a rotation or reflection times one factor.
+bool is_similarity(const glm::dmat4& matrix);
+// The linear part is not orthonormal.
+bool has_scale(const glm::dmat4& matrix);
+
+}  // namespace wavelobe::mitsuba

@@ -1,0 +1,117 @@
+// Access to a block's queues and radiance.
+//
+// Wants BLOCK_SLOTS, a multiple of 16: paths in flight in a block. The queues a scene has no use for take no memory.
+#ifndef WAVELOBE_CORE_BLOCK_H
+#define WAVELOBE_CORE_BLOCK_H
+
+#include "core/vector.h"
+#include "shared/block.h"
+
+// Fields of a path, in order of storage. A path that was traced is kept without those it no longer needs: its origin
+// (except where analytic shapes are refined from it) comes last and is dropped.
+#define PATH_T 0u         // distance of the hit; before tracing: how far to look
+#define PATH_HIT 1u       // what was hit, see shared/bvh.h
+#define PATH_U 2u         // barycentric coordinates
+#define PATH_V 3u
+#define PATH_DIRECTION 4u // 3, unit
+#define PATH_THROUGHPUT 7u // 3
+#define PATH_PDF 10u      // solid angle density that chose `direction`; negative: a delta lobe or the camera did
+#define PATH_ID 11u       // of the path within its block
+#define PATH_DEPTH 12u    // vertices before this one
+#define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette
+#define PATH_ORIGIN 14u   // 3
+
+#if HAS_ANALYTIC
+#define TRACED_FIELDS RAY_FIELDS
+#else
+#define TRACED_FIELDS PATH_ORIGIN
+#endif
+
+// Fields of a shadow ray.
+#define SHADOW_T 0u           // distance to the light
+#define SHADOW_DIRECTION 1u   // 3, unit
+#define SHADOW_CONTRIBUTION 4u // 3, radiance the path gains if nothing is in the way
+#define SHADOW_ID 7u
+#define SHADOW_ORIGIN 8u      // 3
+
+#define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
+#define RAYS_OFFSET 0u
+#define ESCAPED_OFFSET (RAYS_OFFSET + RAY_FIELDS * QUEUE_STRIDE)
+#define EMITTED_OFFSET (ESCAPED_OFFSET + HAS_ENVIRONMENT * TRACED_FIELDS * QUEUE_STRIDE)
+#define DELTA_OFFSET (EMITTED_OFFSET + HAS_SURFACE_LIGHTS * TRACED_FIELDS * QUEUE_STRIDE)
+#define GLOSSY_OFFSET (DELTA_OFFSET + HAS_DELTA_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
+#define DIFFUSE_OFFSET (GLOSSY_OFFSET + HAS_GLOSSY_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
+#define SHADOW_OFFSET (DIFFUSE_OFFSET + HAS_DIFFUSE_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
+#define RADIANCE_OFFSET (SHADOW_OFFSET + SHADOW_FIELDS * QUEUE_STRIDE)
+#define RADIANCE_STRIDE (TILE_PIXELS * BLOCK_SAMPLES)
+#define BLOCK_WORDS (RADIANCE_OFFSET + 3u * RADIANCE_STRIDE)
+
+typedef struct {
+    global struct BlockHeader *header;
+    global float *memory;
+} Block;
+
+INLINE Block block_of(global struct BlockHeader *headers, global float *blocks, size_t index) {
+    Block b = {headers + index, blocks + index * BLOCK_WORDS};
+    return b;
+}
+
+// One queue: field f of slot i is fields[f * QUEUE_STRIDE + i].
+typedef struct {
+    global float *fields;
+    global uint *count;
+} Queue;
+
+INLINE Queue queue_at(Block b, uint which, uint offset) {
+    Queue q = {b.memory + offset, &b.header->count[which]};
+    return q;
+}
+
+#define QUEUE(block, NAME) queue_at(block, QUEUE_##NAME, NAME##_OFFSET)
+
+INLINE Float read_field(Queue q, uint field, uint i) { return load(q.fields + (size_t)field * QUEUE_STRIDE + i); }
+INLINE UInt read_uint(Queue q, uint field, uint i) { return as_UInt(read_field(q, field, i)); }
+INLINE Vec3 read_vec3(Queue q, uint field, uint i) {
+    return vec3(read_field(q, field, i), read_field(q, field + 1u, i), read_field(q, field + 2u, i));
+}
+
+// One slot, for stages that go ray by ray.
+INLINE float slot_float(Queue q, uint field, uint i) { return q.fields[(size_t)field * QUEUE_STRIDE + i]; }
+INLINE uint slot_uint(Queue q, uint field, uint i) { return as_uint(slot_float(q, field, i)); }
+INLINE void set_slot(Queue q, uint field, uint i, float v) { q.fields[(size_t)field * QUEUE_STRIDE + i] = v; }
+
+// Appends the lanes of `bits`: all fields at slot `at`, then the count.
+INLINE void append_field(Queue q, uint field, uint at, Float v, uint bits) {
+    compress_store(q.fields + (size_t)field * QUEUE_STRIDE + at, v, bits);
+}
+INLINE void append_uint(Queue q, uint field, uint at, UInt v, uint bits) { append_field(q, field, at, as_Float(v), bits); }
+INLINE void append_vec3(Queue q, uint field, uint at, Vec3 v, uint bits) {
+    append_field(q, field, at, v.x, bits);
+    append_field(q, field + 1u, at, v.y, bits);
+    append_field(q, field + 2u, at, v.z, bits);
+}
+
+// Lanes of the group that starts at slot i which hold an item of a queue with n of them.
+INLINE Int lanes_below(uint i, uint n) { return (LANE_INDEX + (UInt)i) < (UInt)n; }
+
+// ---- radiance of the block's paths ---------------------------------------------------------------------
+
+INLINE global float *radiance_channel(Block b, uint channel) {
+    return b.memory + RADIANCE_OFFSET + (size_t)channel * RADIANCE_STRIDE;
+}
+
+INLINE void add_radiance(Block b, UInt id, Rgb radiance, uint bits) {
+    const Float channels[3] = {radiance.x, radiance.y, radiance.z};
+    for (uint c = 0u; c < 3u; c++) {
+        global float *channel = radiance_channel(b, c);
+        scatter(channel, id, gather(channel, id) + channels[c], bits);
+    }
+}
+
+// ---- which pixel and sample a path is --------------------------------------------------------------------
+
+INLINE UInt path_pixel_x(Block b, UInt id) { return TILE_X(id) + (UInt)b.header->tile_x; }
+INLINE UInt path_pixel_y(Block b, UInt id) { return TILE_Y(id) + (UInt)b.header->tile_y; }
+INLINE UInt path_sample(Block b, UInt id) { return id / TILE_PIXELS + (UInt)b.header->first_sample; }
+
+#endif

@@ -1,0 +1,102 @@
+// One light of all, and a sample of it. The host defines SCENE_LIGHTS(X), SCENE_SURFACE_LIGHTS(X) and
+// SCENE_ENVIRONMENT_LIGHTS(X) from lights.def and the scene, and includes the headers of these lights before this one.
+#ifndef WAVELOBE_LIGHTS_CHOOSE_H
+#define WAVELOBE_LIGHTS_CHOOSE_H
+
+#include "lights/light.h"
+#include "shared/scene.h"
+#include "bsdf/material.h"
+
+#if HAS_ENVIRONMENT
+#define ENVIRONMENT_PARAMETERS , global const struct Environment *environment
+#define ENVIRONMENT_ARGUMENT environment
+#else
+#define ENVIRONMENT_PARAMETERS
+#define ENVIRONMENT_ARGUMENT 0
+#endif
+#if HAS_LIGHT_ENVMAP
+#define ENVMAP_PARAMETERS                                                                             \
+    , global const float *environment_texels, global const struct AliasEntry *environment_alias,      \
+        global const float *environment_density
+#define ENVMAP_ARGUMENTS environment_texels, environment_alias, environment_density
+#else
+#define ENVMAP_PARAMETERS
+#define ENVMAP_ARGUMENTS 0, 0, 0
+#endif
+#if HAS_ANALYTIC
+#define LIGHT_ANALYTICS analytics
+#else
+#define LIGHT_ANALYTICS 0
+#endif
+
+// For kernels that already take SURFACE_PARAMETERS and TEXTURE_PARAMETERS.
+#define LIGHT_PARAMETERS , global const struct Light *lights ENVIRONMENT_PARAMETERS ENVMAP_PARAMETERS
+#define LIGHT_VIEW {(UInt)0u, lights, LIGHT_ANALYTICS, ENVIRONMENT_ARGUMENT, ENVMAP_ARGUMENTS, TEXTURE_ARGUMENTS}
+
+// Chooses by power: Walker's alias method. `in->light` is the light; the result its probability.
+INLINE Float choose_light(LightInput *in, uint light_count, Float u) {
+#if LIGHT_COUNT == 1
+    in->light = (UInt)0u;
+    return ONE;
+#else
+    Float at = u * (float)light_count;
+    UInt row = as_UInt(convert_Int(at));
+    row = SELECT(row < (UInt)light_count, row, (UInt)(light_count - 1u)); // u * count may round up to count
+    Float fraction = at - convert_Float(as_Int(row));
+    Float threshold = gather((global const float *)in->lights + WORD_OFFSET(Light, alias), row * RECORD_WORDS(Light));
+    UInt other = gather_uint((global const uint *)in->lights + WORD_OFFSET(Light, alias) + 1u, row * RECORD_WORDS(Light));
+    in->light = SELECT(fraction < threshold, row, other);
+    return GATHER_FIELD(in->lights, Light, in->light, selection_probability);
+#endif
+}
+
+INLINE LightSample select_sample(Int mask, LightSample a, LightSample b) {
+    LightSample s;
+    s.direction = select3(mask, a.direction, b.direction);
+    s.point = select3(mask, a.point, b.point);
+    s.error = select3(mask, a.error, b.error);
+    s.normal = select3(mask, a.normal, b.normal);
+    s.at_infinity = SELECT(mask, a.at_infinity, b.at_infinity);
+    s.radiance = select3(mask, a.radiance, b.radiance);
+    s.pdf = SELECT(mask, a.pdf, b.pdf);
+    s.delta = SELECT(mask, a.delta, b.delta);
+    return s;
+}
+
+INLINE LightSample no_light_sample(void) {
+    LightSample s;
+    s.direction = s.point = s.error = s.normal = s.radiance = vec3_all(ZERO);
+    s.pdf = ZERO;
+    s.at_infinity = s.delta = !TRUE_MASK;
+    return s;
+}
+
+// A sample of the light chosen in `in`.
+INLINE LightSample sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
+    LightSample s = no_light_sample();
+    UInt kind = as_UInt(light_field(in, kind));
+#define SAMPLE_LIGHT(name, NAME)                                                                              \
+    {                                                                                                         \
+        Int mine = kind == (UInt)LIGHT_##NAME;                                                                \
+        if (any_lane(mine)) s = select_sample(mine, name##_sample_light(in, reference, u1, u2), s);           \
+    }
+    SCENE_LIGHTS(SAMPLE_LIGHT)
+#undef SAMPLE_LIGHT
+    return s;
+}
+
+// Density of `sample_light` producing a direction in which a surface light was hit.
+INLINE Float surface_light_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {
+    Float pdf = ZERO;
+    UInt kind = as_UInt(light_field(in, kind));
+#define PDF_LIGHT(name, NAME)                                                                                 \
+    {                                                                                                         \
+        Int mine = kind == (UInt)LIGHT_##NAME;                                                                \
+        if (any_lane(mine)) pdf = SELECT(mine, name##_pdf(in, reference, direction, t, normal), pdf);         \
+    }
+    SCENE_SURFACE_LIGHTS(PDF_LIGHT)
+#undef PDF_LIGHT
+    return pdf;
+}
+
+#endif

@@ -1,0 +1,27 @@
+// A point that shines in a cone about edge1: full intensity up to the beam's angle, then falling linearly with the angle
+// to zero at the cutoff.  Fields: radiance (intensity on the axis, W / sr), position, edge1, cos_beam, cos_cutoff.
+#ifndef WAVELOBE_LIGHTS_SPOT_H
+#define WAVELOBE_LIGHTS_SPOT_H
+
+#include "lights/point.h"
+
+// Share of the axial intensity that leaves along `direction`.
+INLINE Float spot_falloff(LightInput in, Vec3 direction) {
+    Vec3 axis = light_vector(in, edge1);
+    Float cosine = dot3(direction, axis);
+    Float cos_beam = light_field(in, cos_beam), cos_cutoff = light_field(in, cos_cutoff);
+    // From sine and cosine, because the cosine alone hardly changes within a narrow beam.
+    Float angle = lane_atan2(sqrt(length_squared(cross3(direction, axis))), cosine);
+    Float beam = lane_acos(cos_beam), cutoff = lane_acos(cos_cutoff);
+    Float ramp = (cutoff - angle) / (cutoff - beam);
+    ramp = LESSER(GREATER(ramp, ZERO), ONE);
+    return SELECT(cosine >= cos_beam, ONE, SELECT(cosine > cos_cutoff, ramp, ZERO));
+}
+
+INLINE LightSample spot_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
+    LightSample s = point_light_sample(reference, light_vector(in, position), light_vector(in, radiance));
+    s.radiance = scale(s.radiance, spot_falloff(in, negate(s.direction)));
+    return s;
+}
+
+#endif

@@ -1,0 +1,25 @@
+// The buffers that traversal walks, as kernel parameters, and rays as queues hold them.
+#ifndef WAVELOBE_SHAPES_GEOMETRY_PARAMETERS_H
+#define WAVELOBE_SHAPES_GEOMETRY_PARAMETERS_H
+
+#include "core/block.h"
+#include "shapes/traversal.h"
+
+#if HAS_ANALYTIC
+#define GEOMETRY_PARAMETERS                                                                        \
+    global const uchar *bvh_nodes, global const uchar *triangle_blocks, global const struct Analytic *analytics, \
+        global const uint *analytic_order
+#define GEOMETRY_VIEW {bvh_nodes, triangle_blocks, analytics, analytic_order}
+#else
+#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes, global const uchar *triangle_blocks
+#define GEOMETRY_VIEW {bvh_nodes, triangle_blocks}
+#endif
+
+INLINE Ray slot_ray(Queue q, uint origin, uint direction, uint limit, uint i) {
+    Ray r = {slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
+             slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
+             slot_float(q, limit, i)};
+    return r;
+}
+
+#endif

@@ -1,0 +1,239 @@
+// Single-ray traversal of the eight-wide hierarchy: closest hit and any hit.
+//
+// A node costs one test of eight boxes on float8. Children are visited in order of distance: the two to four that are
+// usually hit are sorted as 64-bit keys (distance bits << 32 | child), which a positive float's bits allow.
+// Boxes are widened on their far side so that a ray that grazes them is never lost to rounding (Ize 2013, "Robust BVH Ray
+// Traversal").
+//
+// Wants BVH_STACK: entries enough for the deepest path, 7 a level and a sentinel.
+#ifndef WAVELOBE_SHAPES_TRAVERSAL_H
+#define WAVELOBE_SHAPES_TRAVERSAL_H
+
+#include "core/rounding.h"
+#include "shapes/triangle_block.h"
+#if HAS_ANALYTIC
+#include "shapes/analytic_geometry.h"
+#endif
+
+typedef struct {
+    global const uchar *nodes;  // BvhNode
+    global const uchar *blocks; // TriangleBlock
+#if HAS_ANALYTIC
+    global const struct Analytic *analytics;
+    global const uint *analytic_order;
+#endif
+} Geometry;
+
+// Per ray: reciprocals, and the byte offsets of the near and far rows of a node.
+typedef struct {
+    float ox, oy, oz;
+    float near_x, near_y, near_z; // reciprocal direction
+    float far_x, far_y, far_z;    // the same, widened
+    uint near_row_x, near_row_y, near_row_z;
+    uint far_row_x, far_row_y, far_row_z;
+} BoxTest;
+
+#define NODE_ROW_BYTES 32u
+#define NODE_CHILD_BYTES 192u
+#define NODE_SHIFT 8u
+#define FAR_WIDENING (1.0f + 2.0f * GAMMA(3))
+
+// A component of a unit direction this small moves a ray by less than the smallest step of any coordinate; keeping its
+// reciprocal finite avoids 0 * infinity for origins that lie on a box.
+INLINE float reciprocal_direction(float d) {
+    const float least = 0x1p-60f;
+    return 1.0f / (fabs(d) < least ? copysign(least, d) : d);
+}
+
+INLINE BoxTest box_test(const Ray *r) {
+    BoxTest b;
+    b.ox = r->ox, b.oy = r->oy, b.oz = r->oz;
+    b.near_x = reciprocal_direction(r->dx), b.near_y = reciprocal_direction(r->dy), b.near_z = reciprocal_direction(r->dz);
+    b.far_x = b.near_x * FAR_WIDENING, b.far_y = b.near_y * FAR_WIDENING, b.far_z = b.near_z * FAR_WIDENING;
+    uint sx = b.near_x < 0.0f ? 1u : 0u, sy = b.near_y < 0.0f ? 1u : 0u, sz = b.near_z < 0.0f ? 1u : 0u;
+    b.near_row_x = sx * NODE_ROW_BYTES, b.far_row_x = (1u - sx) * NODE_ROW_BYTES;
+    b.near_row_y = (2u + sy) * NODE_ROW_BYTES, b.far_row_y = (3u - sy) * NODE_ROW_BYTES;
+    b.near_row_z = (4u + sz) * NODE_ROW_BYTES, b.far_row_z = (5u - sz) * NODE_ROW_BYTES;
+    return b;
+}
+
+// Bit i: the ray meets child i before `limit`, entering at distance[i].
+INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
+    float8 nx = (row8(node, b->near_row_x) - b->ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->ox) * b->far_x;
+    float8 ny = (row8(node, b->near_row_y) - b->oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->oy) * b->far_y;
+    float8 nz = (row8(node, b->near_row_z) - b->oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->oz) * b->far_z;
+    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
+    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)limit));
+    *distance = enter;
+    return lane_bits8(enter <= leave);
+}
+
+#define POP_LOWEST_BIT(mask, index) uint index = (uint)__builtin_ctz(mask); mask &= mask - 1u
+#define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
+#define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
+
+// Pushes all children of the mask but the nearest, farthest first, and returns the nearest.
+INLINE uint push_children(uint mask, float8 distance, global const uint *child, ulong *stack, uint *top) {
+    POP_LOWEST_BIT(mask, i0);
+    if (LIKELY(mask == 0u)) return child[i0];
+    float entered[8] __attribute__((aligned(32)));
+    *(float8 *)entered = distance;
+    POP_LOWEST_BIT(mask, i1);
+    ulong k0 = CHILD_KEY(i0), k1 = CHILD_KEY(i1);
+    SORT_KEYS(k0, k1);
+    uint n = *top;
+    if (LIKELY(mask == 0u)) {
+        stack[n] = k1;
+        *top = n + 1u;
+        return (uint)k0;
+    }
+    POP_LOWEST_BIT(mask, i2);
+    ulong k2 = CHILD_KEY(i2);
+    SORT_KEYS(k1, k2);
+    SORT_KEYS(k0, k1);
+    if (LIKELY(mask == 0u)) {
+        stack[n] = k2, stack[n + 1u] = k1;
+        *top = n + 2u;
+        return (uint)k0;
+    }
+    POP_LOWEST_BIT(mask, i3);
+    ulong k3 = CHILD_KEY(i3);
+    SORT_KEYS(k2, k3);
+    SORT_KEYS(k1, k2);
+    SORT_KEYS(k0, k1);
+    uint base = n;
+    stack[n] = k3, stack[n + 1u] = k2, stack[n + 2u] = k1;
+    n += 3u;
+    while (mask) { // rare: five and more, by insertion
+        POP_LOWEST_BIT(mask, i);
+        ulong key = CHILD_KEY(i), pushed = max(key, k0);
+        k0 = min(key, k0);
+        uint j = n++;
+        for (; j > base && stack[j - 1u] < pushed; j--) stack[j] = stack[j - 1u];
+        stack[j] = pushed;
+    }
+    *top = n;
+    return (uint)k0;
+}
+
+#if HAS_ANALYTIC
+INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit) {
+    uint first = (reference & ~(BVH_LEAF | BVH_ANALYTIC)) >> 4;
+    for (uint i = first; i < first + (reference & 15u); i++) {
+        uint shape = g.analytic_order[i];
+        float t = intersect_analytic(g.analytics + shape, r, hit->t);
+        if (t < hit->t) {
+            hit->t = t;
+            hit->primitive = HIT_ANALYTIC | shape;
+        }
+    }
+}
+#endif
+
+INLINE void closest_in_block(global const uchar *block, uint index, const RayShear *shear, Hit *hit) {
+    float8 t, u, v;
+    uint mask = intersect_triangle_block(block, shear, hit->t, &t, &u, &v);
+    if (LIKELY(mask == 0u)) return;
+    float ts[8] __attribute__((aligned(32))), us[8] __attribute__((aligned(32))), vs[8] __attribute__((aligned(32)));
+    *(float8 *)ts = t;
+    POP_LOWEST_BIT(mask, nearest);
+    while (mask) {
+        POP_LOWEST_BIT(mask, i);
+        nearest = ts[i] < ts[nearest] ? i : nearest;
+    }
+    *(float8 *)us = u;
+    *(float8 *)vs = v;
+    hit->t = ts[nearest];
+    hit->u = us[nearest];
+    hit->v = vs[nearest];
+    hit->primitive = index * BVH_WIDTH + nearest;
+}
+
+// The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
+INLINE Hit trace_closest(Geometry g, const Ray *r) {
+    BoxTest box = box_test(r);
+    RayShear shear = ray_shear(r);
+    Hit hit = {r->limit, 0.0f, 0.0f, HIT_NONE};
+    if (UNLIKELY(!(r->limit > 0.0f))) return hit; // also a limit that is not a number
+    // Every hit has t > 0, so that the sentinel's distance of 0 is below any limit and it is always popped last.
+    ulong stack[BVH_STACK];
+    stack[0] = BVH_EMPTY;
+    uint top = 1u, current = 0u;
+    for (;;) {
+        while (!(current & BVH_LEAF)) {
+            global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
+            float8 distance;
+            uint mask = intersect_children(node, &box, hit.t, &distance);
+            if (UNLIKELY(mask == 0u)) goto pop;
+            current = push_children(mask, distance, (global const uint *)(node + NODE_CHILD_BYTES), stack, &top);
+        }
+#if HAS_ANALYTIC
+        if (current & BVH_ANALYTIC) {
+            closest_analytic(g, current, r, &hit);
+            goto pop;
+        }
+#endif
+        {
+            uint block = current & ~BVH_LEAF;
+            closest_in_block(g.blocks + (size_t)block * sizeof(struct TriangleBlock), block, &shear, &hit);
+        }
+    pop:;
+        ulong limit_key = (ulong)as_uint(hit.t) << 32, key;
+        do key = stack[--top];
+        while (UNLIKELY(key >= limit_key));
+        current = (uint)key;
+        if (current == BVH_EMPTY) return hit;
+    }
+}
+
+#if HAS_ANALYTIC
+INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
+    uint first = (reference & ~(BVH_LEAF | BVH_ANALYTIC)) >> 4;
+    for (uint i = first; i < first + (reference & 15u); i++) {
+        if (intersect_analytic(g.analytics + g.analytic_order[i], r, r->limit) < r->limit) return 1u;
+    }
+    return 0u;
+}
+#endif
+
+// 1 if anything is hit in (0, limit).
+INLINE uint trace_any(Geometry g, const Ray *r) {
+    BoxTest box = box_test(r);
+    RayShear shear = ray_shear(r);
+    uint stack[BVH_STACK];
+    stack[0] = BVH_EMPTY;
+    uint top = 1u, current = 0u;
+    for (;;) {
+        while (!(current & BVH_LEAF)) {
+            global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
+            global const uint *child = (global const uint *)(node + NODE_CHILD_BYTES);
+            float8 distance;
+            uint mask = intersect_children(node, &box, r->limit, &distance);
+            if (UNLIKELY(mask == 0u)) {
+                current = stack[--top];
+                continue;
+            }
+            POP_LOWEST_BIT(mask, i0);
+            current = child[i0];
+            while (mask) {
+                POP_LOWEST_BIT(mask, i);
+                stack[top++] = current;
+                current = child[i];
+            }
+        }
+        if (current == BVH_EMPTY) return 0u;
+#if HAS_ANALYTIC
+        if (current & BVH_ANALYTIC) {
+            if (any_analytic(g, current, r)) return 1u;
+            current = stack[--top];
+            continue;
+        }
+#endif
+        global const uchar *block = g.blocks + (size_t)(current & ~BVH_LEAF) * sizeof(struct TriangleBlock);
+        float8 t, u, v;
+        if (UNLIKELY(intersect_triangle_block(block, &shear, r->limit, &t, &u, &v))) return 1u;
+        current = stack[--top];
+    }
+}
+
+#endif

@@ -1,0 +1,77 @@
+// One ray against eight triangles, watertight: neighbours that share an edge leave no gap for a ray to slip through.
+// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection".
+#ifndef WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
+#define WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
+
+#include "shapes/ray.h"
+
+// The shear that turns the ray into the unit z axis, and the byte offsets of the permuted coordinates within a vertex.
+typedef struct {
+    float sx, sy, sz;
+    uint kx, ky, kz;
+    float ox, oy, oz;
+} RayShear;
+
+#define BLOCK_ROW_BYTES 32u
+#define BLOCK_VERTEX_BYTES 96u
+#define BLOCK_PRIMITIVE_BYTES 288u
+
+INLINE RayShear ray_shear(const Ray *r) {
+    RayShear s;
+    float ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
+    float d0, d1, d2;
+    if (ax > ay && ax > az) {
+        s.kx = 1u, s.ky = 2u, s.kz = 0u;
+        d0 = r->dy, d1 = r->dz, d2 = r->dx;
+        s.ox = r->oy, s.oy = r->oz, s.oz = r->ox;
+    } else if (ay > az) {
+        s.kx = 2u, s.ky = 0u, s.kz = 1u;
+        d0 = r->dz, d1 = r->dx, d2 = r->dy;
+        s.ox = r->oz, s.oy = r->ox, s.oz = r->oy;
+    } else {
+        s.kx = 0u, s.ky = 1u, s.kz = 2u;
+        d0 = r->dx, d1 = r->dy, d2 = r->dz;
+        s.ox = r->ox, s.oy = r->oy, s.oz = r->oz;
+    }
+    s.sz = 1.0f / d2;
+    s.sx = d0 * s.sz;
+    s.sy = d1 * s.sz;
+    s.kx *= BLOCK_ROW_BYTES;
+    s.ky *= BLOCK_ROW_BYTES;
+    s.kz *= BLOCK_ROW_BYTES;
+    return s;
+}
+
+INLINE float8 row8(global const uchar *base, uint byte_offset) {
+    return *(global const float8 *)(base + byte_offset);
+}
+
+INLINE float8 madd8(float8 a, float8 b, float8 c) {
+#pragma OPENCL FP_CONTRACT ON
+    return a * b + c;
+}
+
+// Bit i of the result: triangle i is hit before `limit`; then t, u and v hold its distance and barycentrics.
+INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *s, float limit, float8 *t, float8 *u,
+                                     float8 *v) {
+    global const uchar *b1 = block + BLOCK_VERTEX_BYTES, *b2 = block + 2u * BLOCK_VERTEX_BYTES;
+    float8 az = row8(block, s->kz) - s->oz, bz = row8(b1, s->kz) - s->oz, cz = row8(b2, s->kz) - s->oz;
+    float8 ax = row8(block, s->kx) - s->ox, bx = row8(b1, s->kx) - s->ox, cx = row8(b2, s->kx) - s->ox;
+    float8 ay = row8(block, s->ky) - s->oy, by = row8(b1, s->ky) - s->oy, cy = row8(b2, s->ky) - s->oy;
+    float8 sx = -s->sx, sy = -s->sy;
+    ax = madd8(sx, az, ax), ay = madd8(sy, az, ay);
+    bx = madd8(sx, bz, bx), by = madd8(sy, bz, by);
+    cx = madd8(sx, cz, cx), cy = madd8(sy, cz, cy);
+    // Signed areas. The products are rounded one by one so that both triangles at an edge compute the same value for it
+    // up to its sign.
+    float8 wa = cx * by - cy * bx, wb = ax * cy - ay * cx, wc = bx * ay - by * ax;
+    float8 det = wa + wb + wc;
+    float8 least = LESSER(LESSER(wa, wb), wc), most = GREATER(GREATER(wa, wb), wc);
+    float8 inverse = 1.0f / det;
+    *t = s->sz * madd8(wa, az, madd8(wb, bz, wc * cz)) * inverse;
+    *u = wb * inverse;
+    *v = wc * inverse;
+    return lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (*t > 0.0f) & (*t < limit) & (det != 0.0f));
+}
+
+#endif

@@ -1,0 +1,45 @@
+// A block: a tile of pixels, a range of their samples, and a small wave of path slots. One work-item owns it.
+//
+// Block memory is a set of queues, each a structure of arrays with QUEUE_STRIDE slots a field, and the radiance of each
+// path of the block. A stage reads its queue from the first slot to the last and appends to others.
+#ifndef WAVELOBE_SHARED_BLOCK_H
+#define WAVELOBE_SHARED_BLOCK_H
+
+#include "shared/types.h"
+
+#define TILE_WIDTH 16u
+#define TILE_PIXELS 256u
+#define BLOCK_MAX_SAMPLES 16u // of each pixel: radiance of a block's paths stays in the core's cache
+// Pixels of a tile go in 4 x 4 squares, so that 16 neighbouring ids are neighbours in the picture too: the bits of an id
+// are yyxx of the square, then yyxx inside it.
+#define TILE_X(id) (((id) & 3u) | (((id) >> 2) & 12u))
+#define TILE_Y(id) ((((id) >> 2) & 3u) | (((id) >> 4) & 12u))
+
+#define QUEUE_PADDING 16u     // vector stores may run past the last slot
+#define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h
+#define SHADOW_FIELDS 11u
+
+// Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.
+#define QUEUE_RAYS 0u
+#define QUEUE_ESCAPED 1u
+#define QUEUE_EMITTED 2u
+#define QUEUE_DELTA 3u
+#define QUEUE_GLOSSY 4u
+#define QUEUE_DIFFUSE 5u
+#define QUEUE_SHADOW 6u
+#define QUEUE_COUNT 7u
+
+// What the host fills in to hand a block its work, and reads back to launch only what has something to do.
+struct BlockHeader {
+    Uint32 tile_x, tile_y;     // film coordinates of the tile's first pixel
+    Uint32 first_sample;       // index of the first sample
+    Uint32 path_count;         // TILE_PIXELS * samples; path id = sample * TILE_PIXELS + pixel of the tile
+    Uint32 next_path;          // first id not yet started
+    Uint32 count[QUEUE_COUNT]; // items in each queue
+    Uint32 nonfinite_path;     // id of a path whose sample was not finite; WAVELOBE_NONE: none
+    Uint32 traced;             // rays of the last round
+    Uint32 unused[2];
+};
+WAVELOBE_CHECK_SIZE(BlockHeader, 64);
+
+#endif

@@ -1,0 +1,23 @@
+// Which pair of sample dimensions serves what: a value is a function of (pixel, sample, pair, seed) alone.
+#ifndef WAVELOBE_STAGES_DIMENSIONS_H
+#define WAVELOBE_STAGES_DIMENSIONS_H
+
+#include "core/block.h"
+#include "sampling/sampler.h"
+#include "shared/scene.h"
+
+#define PAIR_FILM 0u
+#define PAIRS_BEFORE_PATH 1u
+#define PAIRS_PER_VERTEX 4u
+#define PAIR_LIGHT 0u     // point on the light
+#define PAIR_DIRECTION 1u // direction of the lobe
+#define PAIR_CHOICE 2u    // which light; reflection or refraction
+#define PAIR_SURVIVAL 3u  // which class of lobes; Russian roulette
+
+INLINE SampleId path_sample_id(Block block, UInt id, uint seed) {
+    return sample_id(path_pixel_x(block, id), path_pixel_y(block, id), path_sample(block, id), seed);
+}
+
+INLINE UInt vertex_pair(UInt depth, uint pair) { return depth * PAIRS_PER_VERTEX + (UInt)(PAIRS_BEFORE_PATH + pair); }
+
+#endif

@@ -1,0 +1,103 @@
+// Glossy and diffuse lobes share all but the lobe that proposes the next direction: next-event estimation, BSDF sampling,
+// and MIS between them. Both densities are mixtures over all non-delta lobes of the material.
+#ifndef WAVELOBE_STAGES_SCATTER_SMOOTH_H
+#define WAVELOBE_STAGES_SCATTER_SMOOTH_H
+
+#include "bsdf/material.h"
+#include "sampling/mis.h"
+#include "stages/continue_path.h"
+#if HAS_LIGHTS
+#include "lights/choose.h"
+
+// How far a shadow ray may look, as a share of its length: short of the light's own surface by the rounding of a hit's
+// distance. GAMMA(16) covers the shear, the three products and sums and the division of the triangle test.
+#define SHADOW_REACH (1.0f - 2.0f * GAMMA(16))
+
+// Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
+INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, uint light_count,
+                                const TracedPath *path, const Surface *surface, const SmoothLobes *lobes) {
+    Float u_light, unused, u1, u2;
+#if LIGHT_COUNT == 1
+    u_light = ZERO;
+#else
+    sample_2d(sample, vertex_pair(path->depth, PAIR_CHOICE), &u_light, &unused);
+#endif
+    sample_2d(sample, vertex_pair(path->depth, PAIR_LIGHT), &u1, &u2);
+    Float choice = choose_light(&in, light_count, u_light);
+    LightSample light = sample_light(in, surface->position, u1, u2);
+    Int shines = path->live & (light.pdf > 0.0f) & (max_component(light.radiance) > 0.0f);
+    if (!any_lane(shines)) return at;
+
+    LobeValue value = eval_smooth_lobes(lobes, surface->wi, to_local(surface->frame, light.direction));
+    Float pdf = choice * light.pdf;
+    Float weight = SELECT(light.delta, ONE, power_heuristic(pdf, value.pdf));
+    Rgb contribution = scale(mul(mul(path->throughput, value.f_cos), light.radiance), weight / pdf);
+    Int contributes = shines & (max_component(contribution) > 0.0f);
+    uint bits = lane_bits(contributes);
+    if (bits == 0u) return at;
+
+    // From beyond the surface's rounding error to before the light's.
+    Vec3 origin = offset_ray_origin(surface->position, surface->error, surface->normal, light.direction);
+    Vec3 target = offset_ray_origin(light.point, light.error, light.normal, negate(light.direction));
+    Vec3 way = sub(target, origin);
+    Float distance = sqrt(length_squared(way));
+    Vec3 direction = select3(light.at_infinity, light.direction, scale(way, 1.0f / distance));
+    append_vec3(shadow, SHADOW_ORIGIN, at, origin, bits);
+    append_vec3(shadow, SHADOW_DIRECTION, at, direction, bits);
+    append_field(shadow, SHADOW_T, at, SELECT(light.at_infinity, (Float)INFINITY, distance * SHADOW_REACH), bits);
+    append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
+    append_uint(shadow, SHADOW_ID, at, path->id, bits);
+    return at + popcount(bits);
+}
+
+#define SMOOTH_PARAMETERS SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS
+#define SMOOTH_LIGHTS LIGHT_VIEW
+#else
+typedef struct { int none; } LightInput;
+#define SMOOTH_PARAMETERS SURFACE_PARAMETERS TEXTURE_PARAMETERS
+#define SMOOTH_LIGHTS {0}
+#endif
+
+// A direction from the lobe of the queue's class.
+INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId sample, UInt depth, Vec3 wi) {
+    Float u1, u2, unused, u3 = ZERO;
+    sample_2d(sample, vertex_pair(depth, PAIR_DIRECTION), &u1, &u2);
+#if HAS_TRANSMISSION // a lobe on both sides of the surface chooses between them
+    sample_2d(sample, vertex_pair(depth, PAIR_CHOICE), &unused, &u3);
+#endif
+    return lobe_class == LOBE_CLASS_GLOSSY ? sample_glossy_lobe(lobes, wi, u1, u2, u3)
+                                           : sample_diffuse_lobe(lobes, wi, u1, u2, u3);
+}
+
+// The body of both stages: `lobe_class` is a constant.
+INLINE void scatter_smooth(uint lobe_class, Block block, Queue paths, SurfaceView view, LightInput lights,
+                           global const struct RenderParameters *parameters, global const struct Texture *textures,
+                           global const float *texels) {
+    Queue rays = QUEUE(block, RAYS);
+    uint n = *paths.count, appended = *rays.count, shadows = block.header->count[QUEUE_SHADOW];
+    for (uint i = 0u; i < n; i += LANES) {
+        TracedPath path = read_traced_path(paths, i);
+        Surface surface = load_surface(view, &path);
+        MaterialInput in = material_input(&surface, view.materials, textures, texels);
+        SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
+        SampleId sample = path_sample_id(block, path.id, parameters->seed);
+#if HAS_LIGHTS
+        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, lights, sample, parameters->light_count, &path,
+                                      &surface, &lobes);
+#endif
+        Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
+        LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
+        Int alive = path.live & (value.pdf > 0.0f);
+        Rgb throughput = mul(path.throughput, scale(value.f_cos, 1.0f / SELECT(alive, value.pdf, ONE)));
+        alive &= max_component(throughput) > 0.0f;
+        Float eta = PATH_ETA_OF(path);
+        alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
+        Vec3 direction = normalize3(to_world(surface.frame, wo));
+        appended = append_rays(rays, appended, &path, &surface, direction, throughput, value.pdf, eta, alive);
+    }
+    *rays.count = appended;
+    *paths.count = 0u;
+    block.header->count[QUEUE_SHADOW] = shadows;
+}
+
+#endif

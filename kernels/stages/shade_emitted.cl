@@ -1,0 +1,49 @@
+// Paths that hit a light gain its radiance, weighted against the light sample of the vertex before.
+#include "lights/choose.h"
+#include "sampling/mis.h"
+
+// Hit lights: which light of all, from the shape and the triangle.
+INLINE UInt light_of_surface(SurfaceView view, const Surface *surface) {
+    UInt first_light = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, first_light);
+    UInt first_primitive = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, first_primitive);
+    UInt per_light = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, triangles_per_light);
+    UInt triangle = surface->primitive - first_primitive;
+    return first_light + SELECT(per_light == (UInt)2u, (UInt)0u, triangle);
+}
+
+kernel void shade_emitted(global struct BlockHeader *headers, global float *blocks,
+                          SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS) {
+    Block block = block_of(headers, blocks, get_global_id(0));
+    SurfaceView view = SURFACE_VIEW;
+    Queue emitted = QUEUE(block, EMITTED);
+    uint n = *emitted.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        TracedPath path = read_traced_path(emitted, i);
+        Surface surface = load_surface(view, &path);
+        LightInput in = LIGHT_VIEW;
+        in.light = SELECT(path.live, light_of_surface(view, &surface), (UInt)0u);
+        Vec3 normal = surface.normal;
+        Int facing = path.live & (dot3(normal, path.direction) < 0.0f);
+        Rgb radiance = light_radiance(in, surface.u, surface.v);
+        // A path that a delta lobe or the camera sent here could not have been made by light sampling.
+        Int sampled = path.pdf >= 0.0f;
+        Float weight = ONE;
+        if (any_lane(facing & sampled)) {
+#if HAS_ANALYTIC
+            Vec3 reference = path.origin;
+#else
+            Vec3 reference = vec3_all(ZERO); // flat lights do not ask for it
+#endif
+#if LIGHT_COUNT == 1
+            Float choice = ONE;
+#else
+            Float choice = GATHER_FIELD(in.lights, Light, in.light, selection_probability);
+#endif
+            Float light_pdf = choice * surface_light_pdf(in, reference, path.direction, path.t, normal);
+            weight = SELECT(sampled, power_heuristic(path.pdf, light_pdf), ONE);
+        }
+        Rgb gain = scale(mul(path.throughput, radiance), weight);
+        add_radiance(block, path.id, gain, lane_bits(facing));
+    }
+    *emitted.count = 0u;
+}

@@ -1,0 +1,34 @@
+// Paths that left the scene gain the environment's radiance, weighted against the light sample of the vertex before.
+#include "lights/choose.h"
+#include "sampling/mis.h"
+
+kernel void shade_escaped(global struct BlockHeader *headers, global float *blocks,
+                          SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS) {
+    Block block = block_of(headers, blocks, get_global_id(0));
+    Queue escaped = QUEUE(block, ESCAPED);
+    uint n = *escaped.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        TracedPath path = read_traced_path(escaped, i);
+        LightInput in = LIGHT_VIEW;
+        in.light = (UInt)environment->light;
+        Rgb radiance = vec3_all(ZERO);
+        Float pdf = ZERO;
+        // A scene has one environment.
+#define ENVIRONMENT_LIGHT(name, NAME)                                                                     \
+        radiance = name##_radiance(in, path.direction);                                                   \
+        pdf = name##_pdf(in, vec3_all(ZERO), path.direction, (Float)INFINITY, vec3_all(ZERO));
+        SCENE_ENVIRONMENT_LIGHTS(ENVIRONMENT_LIGHT)
+#undef ENVIRONMENT_LIGHT
+#if LIGHT_COUNT == 1
+        Float choice = ONE;
+#else
+        Float choice = GATHER_FIELD(in.lights, Light, in.light, selection_probability);
+#endif
+        Float weight = SELECT(path.pdf >= 0.0f, power_heuristic(path.pdf, choice * pdf), ONE);
+#if HIDE_EMITTERS
+        weight = SELECT(path.depth == (UInt)0u, ZERO, weight);
+#endif
+        add_radiance(block, path.id, scale(mul(path.throughput, radiance), weight), lane_bits(path.live));
+    }
+    *escaped.count = 0u;
+}

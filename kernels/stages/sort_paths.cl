@@ -1,0 +1,126 @@
+// Sorts traced paths by what comes next: each goes into the queue of the escaped, of those that hit a light, and of the
+// class of lobes that continues it. Paths with nothing left to do end here. Leaves the ray queue empty.
+#include "stages/dimensions.h"
+#include "bsdf/material.h"
+
+// Copies the lanes of `bits` of the ray queue's group at slot i to the end of another queue.
+INLINE uint move_paths(Queue to, uint at, Queue rays, uint i, Rgb throughput, uint bits) {
+#pragma unroll
+    for (uint f = 0u; f < TRACED_FIELDS; f++) {
+        if (f - PATH_THROUGHPUT < 3u) continue;
+        append_field(to, f, at, read_field(rays, f, i), bits);
+    }
+    append_vec3(to, PATH_THROUGHPUT, at, throughput, bits);
+    return at + popcount(bits);
+}
+
+// Which lanes continue by which class of lobes, and what the choice does to the throughput.
+typedef struct {
+    Int delta, glossy, diffuse;
+    Rgb throughput;
+} Continuation;
+
+#if HAS_LOBE_CHOICE
+// Some material has lobes of several classes, or differs between its sides: the surface decides.
+INLINE Continuation choose_class(Block block, uint seed, SurfaceView view, const TracedPath *path, Int scattering,
+                                 global const struct Texture *textures, global const float *texels) {
+    Surface surface = load_surface(view, path);
+    MaterialInput in = material_input(&surface, view.materials, textures, texels);
+    ClassWeights w = class_weights(material_lobes(&surface, in), in, surface.wi);
+    Float unused, u;
+    sample_2d(path_sample_id(block, path->id, seed), vertex_pair(path->depth, PAIR_SURVIVAL), &unused, &u);
+    Float smooth = w.glossy + w.diffuse, all = w.delta + smooth;
+    Float at = u * all;
+    Int delta = at < w.delta;
+    Continuation c;
+    scattering &= all > 0.0f;
+    c.delta = scattering & delta;
+    c.glossy = scattering & !delta & (at < w.delta + w.glossy);
+    c.diffuse = scattering & !delta & !c.glossy & (w.diffuse > 0.0f);
+    // A sum's last rounding may point past a class of no weight.
+    c.glossy |= scattering & !delta & (w.diffuse <= 0.0f);
+    c.throughput = scale(path->throughput, SELECT(scattering, all / SELECT(delta, w.delta, smooth), ONE));
+    return c;
+}
+#endif
+
+#if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
+// Camera rays pass through lights: they are traced on from behind them.
+INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int hidden) {
+    uint bits = lane_bits(hidden);
+    TracedPath path = read_traced_path(rays, i);
+    path.hit = SELECT(hidden, path.hit, (UInt)0u);
+    Surface surface = load_surface(view, &path);
+    at = move_paths(rays, at, rays, i, path.throughput, bits);
+    uint first = at - popcount(bits);
+    append_vec3(rays, PATH_ORIGIN, first,
+                offset_ray_origin(surface.position, surface.error, surface.normal, path.direction), bits);
+    append_field(rays, PATH_T, first, (Float)INFINITY, bits);
+    return at;
+}
+#endif
+
+kernel void sort_paths(global struct BlockHeader *headers, global float *blocks, SURFACE_PARAMETERS TEXTURE_PARAMETERS) {
+    Block block = block_of(headers, blocks, get_global_id(0));
+    SurfaceView view = SURFACE_VIEW;
+    Queue rays = QUEUE(block, RAYS);
+    uint n = *rays.count;
+    uint passed = 0u, escaped = 0u, emitted = 0u, delta = 0u, glossy = 0u, diffuse = 0u;
+    for (uint i = 0u; i < n; i += LANES) {
+        Int live = lanes_below(i, n);
+        UInt hit = read_uint(rays, PATH_HIT, i);
+        Int found = live & (hit != (UInt)HIT_NONE);
+        Rgb throughput = read_vec3(rays, PATH_THROUGHPUT, i);
+#if HAS_ENVIRONMENT
+        uint out = lane_bits(live & !found);
+        if (out) escaped = move_paths(QUEUE(block, ESCAPED), escaped, rays, i, throughput, out);
+#endif
+        UInt shape = gather_uint(view.primitive_shapes, primitive_of_hit(view, SELECT(found, hit, (UInt)0u)));
+        UInt flags = GATHER_UINT_FIELD(view.shapes, Shape, shape, flags);
+        UInt depth = read_uint(rays, PATH_DEPTH, i);
+#if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
+        Int hidden = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u) & (depth == (UInt)0u);
+        found &= !hidden;
+#endif
+#if HAS_SURFACE_LIGHTS
+        uint lit = lane_bits(found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u));
+        if (lit) emitted = move_paths(QUEUE(block, EMITTED), emitted, rays, i, throughput, lit);
+#endif
+        Int scattering = found & (depth + (UInt)1u < (UInt)parameters->max_depth);
+        Continuation c;
+#if HAS_LOBE_CHOICE
+        TracedPath path = read_traced_path(rays, i);
+        path.hit = SELECT(found, path.hit, (UInt)0u);
+        c = choose_class(block, parameters->seed, view, &path, scattering, TEXTURE_ARGUMENTS);
+#else
+        c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
+        c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
+        c.diffuse = scattering & ((flags & (UInt)SHAPE_HAS_DIFFUSE) != (UInt)0u);
+        c.throughput = throughput;
+#endif
+#if HAS_DELTA_LOBES
+        uint d = lane_bits(c.delta);
+        if (d) delta = move_paths(QUEUE(block, DELTA), delta, rays, i, c.throughput, d);
+#endif
+#if HAS_GLOSSY_LOBES
+        uint g = lane_bits(c.glossy);
+        if (g) glossy = move_paths(QUEUE(block, GLOSSY), glossy, rays, i, c.throughput, g);
+#endif
+#if HAS_DIFFUSE_LOBES
+        uint f = lane_bits(c.diffuse);
+        if (f) diffuse = move_paths(QUEUE(block, DIFFUSE), diffuse, rays, i, c.throughput, f);
+#endif
+#if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
+        // Last, because it writes over slots of this group and earlier ones.
+        if (any_lane(hidden)) passed = pass_through(rays, passed, i, view, hidden);
+#endif
+    }
+    block.header->traced = n;
+    global uint *count = block.header->count;
+    count[QUEUE_RAYS] = passed;
+    count[QUEUE_ESCAPED] = escaped;
+    count[QUEUE_EMITTED] = emitted;
+    count[QUEUE_DELTA] = delta;
+    count[QUEUE_GLOSSY] = glossy;
+    count[QUEUE_DIFFUSE] = diffuse;
+}

@@ -1,0 +1,195 @@
+#include "tables/environment_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "scene/fault.h"
+#include "tables/light_power.h"
+
+namespace wavelobe {
+namespace {
+
+using std::numbers::pi;
+
+Bitmap picture(int width, int height, const std::function<Rgb(int, int)>& color) {
+    Bitmap image{.width = width, .height = height, .rgb = {}};
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const Rgb c = color(x, y);
+            image.rgb.insert(image.rgb.end(), {c.r, c.g, c.b});
+        }
+    }
+    return image;
+}
+
+Bitmap random_picture(int width, int height) {
+    std::mt19937 random(7);
+    std::exponential_distribution<float> exponential(1.0F);
+    return picture(width, height, [&](int, int) {
+        return Rgb(exponential(random), exponential(random), exponential(random));
+    });
+}
+
+// Probability of each cell: chance of its row times its chance within the row.
+std::vector<double> cell_probabilities(const EnvironmentTable& table) {
+    const std::size_t rows = table.cell_rows;
+    const std::size_t columns = table.cell_columns;
+    const auto chances = [&](std::size_t first, std::size_t count) {
+        std::vector<double> p(count, 0.0);
+        for (std::size_t i = 0; i < count; ++i) {
+            const AliasEntry& entry = table.alias[first + i];
+            const auto threshold = static_cast<double>(entry.threshold);
+            p[i] += threshold / static_cast<double>(count);
+            p[entry.other] += (1.0 - threshold) / static_cast<double>(count);
+        }
+        return p;
+    };
+    const std::vector<double> row_chance = chances(rows * columns, rows);
+    std::vector<double> result;
+    for (std::size_t y = 0; y < rows; ++y) {
+        for (double p : chances(y * columns, columns)) result.push_back(p * row_chance[y]);
+    }
+    return result;
+}
+
+TEST(EnvironmentTable, CellsFollowLuminanceTimesSolidAngle) {
+    const Bitmap image = random_picture(13, 9);
+    const EnvironmentTable table = build_environment_table(image);
+    ASSERT_EQ(table.cell_columns, 13U);
+    ASSERT_EQ(table.cell_rows, 8U);
+    ASSERT_EQ(table.alias.size(), 8U * 14U);
+    ASSERT_EQ(table.density.size(), 8U * 13U);
+
+    const auto texel = [&](std::size_t x, std::size_t y) {
+        const std::size_t i = 3 * (y * 13 + x % 13);
+        return luminance({image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]});
+    };
+    std::vector<double> weight;
+    for (std::size_t y = 0; y < 8; ++y) {
+        const double solid_angle =
+            2.0 * pi / 13.0 * (std::cos(pi * static_cast<double>(y) / 8.0) - std::cos(pi * static_cast<double>(y + 1) / 8.0));
+        for (std::size_t x = 0; x < 13; ++x) {
+            weight.push_back(solid_angle * 0.25 * (texel(x, y) + texel(x + 1, y) + texel(x, y + 1) + texel(x + 1, y + 1)));
+        }
+    }
+    const double sum = std::accumulate(weight.begin(), weight.end(), 0.0);
+    const std::vector<double> p = cell_probabilities(table);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        EXPECT_NEAR(p[i], weight[i] / sum, 1e-6 * weight[i] / sum + 1e-8) << "cell " << i;
+        // The density is that probability over the cell's share of the unit square.
+        const double density = weight[i] / sum * 8.0 * 13.0;
+        EXPECT_NEAR(static_cast<double>(table.density[i]), density, 1e-6 * density) << "cell " << i;
+    }
+    EXPECT_NEAR(table.luminance_integral, sum, 1e-12 * sum);
+}
+
+TEST(EnvironmentTable, EvenPictureHasTheSolidAngleOfTheSphere) {
+    for (int height : {2, 3, 7, 64}) {
+        const EnvironmentTable table = build_environment_table(picture(16, height, [](int, int) { return Rgb(1.0F); }));
+        EXPECT_NEAR(table.luminance_integral, 4.0 * pi, 1e-12);
+    }
+}
+
+TEST(EnvironmentTable, OneBrightTexelLightsItsFourCellsOnly) {
+    const EnvironmentTable table =
+        build_environment_table(picture(8, 6, [](int x, int y) { return Rgb(x == 0 && y == 2 ? 5.0F : 0.0F); }));
+    for (std::size_t y = 0; y < 5; ++y) {
+        for (std::size_t x = 0; x < 8; ++x) {
+            const bool touches = (x == 0 || x == 7) && (y == 1 || y == 2);
+            EXPECT_EQ(table.density[y * 8 + x] > 0.0F, touches) << x << ", " << y;
+        }
+    }
+}
+
+TEST(EnvironmentTable, BlackPictureIsSampledEvenlyOverTheSphere) {
+    const EnvironmentTable table = build_environment_table(picture(8, 5, [](int, int) { return Rgb(0.0F); }));
+    EXPECT_EQ(table.luminance_integral, 0.0);
+    const std::vector<double> p = cell_probabilities(table);
+    EXPECT_NEAR(std::accumulate(p.begin(), p.end(), 0.0), 1.0, 1e-12);
+    const double polar = 0.5 * (1.0 - std::cos(pi / 4.0)) / 8.0;
+    EXPECT_NEAR(p[0], polar, 1e-7);
+    EXPECT_NEAR(p[31], polar, 1e-7);
+}
+
+TEST(EnvironmentTable, RefusesTexelsThatAreNoRadiance) {
+    for (float bad : {-1.0F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Bitmap image = random_picture(4, 4);
+        image.rgb[3 * (4 * 2 + 1) + 1] = bad;
+        try {
+            build_environment_table(image, "sky.exr");
+            FAIL() << bad << " was taken";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("sky.exr"), std::string::npos);
+            EXPECT_NE(std::string(error.what()).find("texel (1, 2)"), std::string::npos) << error.what();
+        }
+    }
+    EXPECT_THROW(build_environment_table(Bitmap{}), InputError);
+    EXPECT_THROW(build_environment_table(random_picture(4, 1)), InputError);
+}
+
+TEST(EnvironmentTable, RepeatsTheLastRowOfFlatPictures) {
+    const Bitmap two = with_three_rows(picture(2, 2, [](int, int y) { return Rgb(static_cast<float>(y)); }));
+    ASSERT_EQ(two.height, 3);
+    const std::vector<float> expected = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    EXPECT_EQ(two.rgb, expected);
+    EXPECT_EQ(with_three_rows(random_picture(3, 1)).height, 3);
+    EXPECT_EQ(with_three_rows(random_picture(3, 4)).height, 4);
+}
+
+// ---- power ---------------------------------------------------------------------------------------------------
+
+TEST(LightPower, PointAndDirectional) {
+    const double y = luminance({1.0F, 2.0F, 3.0F});
+    EXPECT_NEAR(y, 0.212671 + 2 * 0.715160 + 3 * 0.072169, 1e-12);
+    EXPECT_NEAR(emitter_power(PointEmitter{.position = {}, .intensity = {1, 2, 3}}, 10.0), 4.0 * pi * y, 1e-9);
+    EXPECT_NEAR(emitter_power(DirectionalEmitter{.direction = {0, 0, 1}, .irradiance = {1, 2, 3}}, 10.0), 100.0 * pi * y, 1e-9);
+}
+
+TEST(LightPower, SpotIntegratesItsFalloff) {
+    for (auto [beam, cutoff] : {std::pair{15.0F, 20.0F}, {0.0F, 90.0F}, {20.0F, 20.0F}, {0.5F, 1.0F}, {80.0F, 170.0F}}) {
+        SpotEmitter spot;
+        spot.intensity = Rgb(1.0F);
+        spot.beam_width_degrees = beam;
+        spot.cutoff_degrees = cutoff;
+        // Midpoint rule over the polar angle, on each side of the beam's edge.
+        const double b = static_cast<double>(beam) * pi / 180.0;
+        const double c = static_cast<double>(cutoff) * pi / 180.0;
+        const int steps = 20000;
+        double integral = 0.0;
+        for (int i = 0; i < steps; ++i) {
+            const double share = (i + 0.5) / steps;
+            integral += 2.0 * pi / steps * (b * std::sin(b * share) + (c - b) * (1.0 - share) * std::sin(b + (c - b) * share));
+        }
+        EXPECT_NEAR(emitter_power(spot, 1.0), integral * luminance(Rgb(1.0F)), 1e-7 * integral) << beam << " " << cutoff;
+    }
+}
+
+TEST(LightPower, EnvironmentsPassTheBoundingSphere) {
+    const double y = luminance(Rgb(2.0F));
+    const double expected = 4.0 * pi * pi * 9.0 * y;
+    EXPECT_NEAR(emitter_power(ConstantEmitter{Rgb(2.0F)}, 3.0), expected, 1e-9 * expected);
+    EnvironmentMap map;
+    map.image = picture(4, 1, [](int, int) { return Rgb(1.0F); });
+    map.scale = 2.0F;
+    EXPECT_NEAR(emitter_power(map, 3.0), expected, 1e-9 * expected);
+}
+
+TEST(LightPower, AreaLightsEmitPiTimesAreaTimesMeanRadiance) {
+    AreaEmitter emitter;
+    emitter.radiance.value = Rgb(2.0F);
+    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+    auto texture = std::make_shared<Texture>();
+    texture->source = picture(2, 1, [](int x, int) { return Rgb(x == 0 ? 0.0F : 4.0F); });
+    emitter.radiance.texture = texture;
+    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+    texture->source = Checkerboard{Rgb(1.0F), Rgb(3.0F)};
+    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+}
+
+}  // namespace
+}  // namespace wavelobe

@@ -1,0 +1,133 @@
+// Parameter sets for the generic tests of lobes. Every lobe of bsdf/lobes.def needs some.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/lobe_reference.h"
+
+namespace wavelobe::test {
+
+struct LobeParameters {
+    std::string name;
+    Material material;
+    double width = 1.0;  // angular scale of the lobe in radians: narrow ones are binned about their axes
+};
+
+// A white material: all of it that a lobe does not set is neutral.
+inline Material white_material() {
+    Material m{};
+    m.diffuse = {{1.0F, 1.0F, 1.0F}, WAVELOBE_NONE};
+    m.specular = {{1.0F, 1.0F, 1.0F}, WAVELOBE_NONE};
+    m.transmission = {{1.0F, 1.0F, 1.0F}, WAVELOBE_NONE};
+    m.eta = {0.0F, 0.0F, 0.0F};
+    m.k = {1.0F, 1.0F, 1.0F};
+    m.alpha_u = {0.1F, WAVELOBE_NONE};
+    m.alpha_v = {0.1F, WAVELOBE_NONE};
+    m.exponent = {30.0F, WAVELOBE_NONE};
+    return m;
+}
+
+inline Material coloured_material() {
+    Material m = white_material();
+    m.diffuse.value = {0.8F, 0.5F, 0.1F};
+    m.specular.value = {0.9F, 0.4F, 0.2F};
+    m.transmission.value = {0.3F, 0.7F, 0.6F};
+    return m;
+}
+
+inline Material conductor(Material m, Packed3 eta, Packed3 k) {
+    m.eta = eta;
+    m.k = k;
+    return m;
+}
+
+inline Material dielectric(Material m, float eta, Uint32 flags = MATERIAL_TRANSMISSIVE) {
+    m.eta = {eta, eta, eta};
+    m.flags |= flags;
+    return m;
+}
+
+inline Material rough(Material m, float alpha_u, float alpha_v, Uint32 flags = 0) {
+    m.alpha_u.value = alpha_u;
+    m.alpha_v.value = alpha_v;
+    m.flags |= flags;
+    return m;
+}
+
+inline Material phong(Material m, float exponent) {
+    m.exponent.value = exponent;
+    m.specular_weight = 0.3F;
+    return m;
+}
+
+// Cosine-weighted mean Fresnel reflectance from inside, by the midpoint rule over squared cosines.
+inline float internal_reflectance(float eta) {
+    constexpr int steps = 10000;
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i) sum += reference_fresnel_dielectric(-std::sqrt((i + 0.5) / steps), eta);
+    return static_cast<float>(sum / steps);
+}
+
+inline Material plastic(Material m, float eta, Uint32 flags = 0) {
+    m = dielectric(m, eta, flags);
+    m.diffuse_fresnel_internal = internal_reflectance(eta);
+    m.specular_weight = 0.6F;
+    return m;
+}
+
+// By the name of the lobe.
+inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters() {
+    const Packed3 gold_eta{0.143F, 0.375F, 1.442F};
+    const Packed3 gold_k{3.983F, 2.386F, 1.603F};
+    const Material white = white_material();
+    const Material coloured = coloured_material();
+    const Material gold = conductor(coloured, gold_eta, gold_k);
+    static const std::map<std::string, std::vector<LobeParameters>> sets{
+        {"mirror", {{"ideal", white}, {"gold", gold}}},
+        {"dielectric",
+         {{"glass", dielectric(white, 1.5F)},
+          {"bubble", dielectric(coloured, 1.0F / 1.5F)},
+          {"faint", dielectric(white, 1.0001F)},
+          {"matched", dielectric(white, 1.0F)},
+          {"diamond", dielectric(coloured, 2.4F)}}},
+        {"thin_dielectric",
+         {{"glass", dielectric(white, 1.5F)},
+          {"bubble", dielectric(coloured, 1.0F / 1.5F)},
+          {"matched", dielectric(white, 1.0F)}}},
+        {"plastic_coat",
+         {{"white", plastic(white, 1.5F)}, {"coloured", plastic(coloured, 1.3F)}}},
+        {"rough_conductor",
+         {{"ggx", rough(white, 0.3F, 0.3F)},
+          {"ggx_stretched", rough(gold, 0.05F, 0.6F)},
+          {"ggx_roughest", rough(white, 1.0F, 1.0F)},
+          {"ggx_smoothest", rough(white, 1e-4F, 1e-4F), 1e-4},
+          {"beckmann", rough(white, 0.3F, 0.3F, MATERIAL_BECKMANN)},
+          {"beckmann_stretched", rough(gold, 0.6F, 0.05F, MATERIAL_BECKMANN)},
+          {"beckmann_roughest", rough(white, 1.0F, 1.0F, MATERIAL_BECKMANN)},
+          {"beckmann_smoothest", rough(white, 1e-4F, 1e-4F, MATERIAL_BECKMANN), 1e-4}}},
+        {"rough_dielectric",
+         {{"ggx_glass", rough(dielectric(white, 1.5F), 0.3F, 0.3F)},
+          {"ggx_bubble", rough(dielectric(coloured, 1.0F / 1.5F), 0.2F, 0.7F)},
+          {"ggx_roughest_diamond", rough(dielectric(white, 2.4F), 1.0F, 1.0F)},
+          {"ggx_smoothest", rough(dielectric(white, 1.5F), 1e-4F, 1e-4F), 1e-4},
+          {"beckmann_glass", rough(dielectric(white, 1.5F), 0.3F, 0.3F, MATERIAL_BECKMANN)},
+          {"beckmann_bubble", rough(dielectric(coloured, 1.0F / 1.5F), 0.7F, 0.2F, MATERIAL_BECKMANN)},
+          {"beckmann_smoothest", rough(dielectric(white, 1.5F), 1e-4F, 1e-4F, MATERIAL_BECKMANN), 1e-4}}},
+        {"phong",
+         {{"broadest", phong(white, 0.0F)},
+          {"broad", phong(coloured, 1.0F)},
+          {"glossy", phong(white, 30.0F)},
+          {"narrow", phong(coloured, 1000.0F)},
+          {"narrowest", phong(white, 1e6F), 1e-3}}},
+        {"lambert", {{"white", white}, {"coloured", coloured}}},
+        {"plastic_base",
+         {{"white", plastic(white, 1.5F)},
+          {"coloured", plastic(coloured, 1.3F)},
+          {"saturated", plastic(coloured, 1.5F, MATERIAL_NONLINEAR)}}},
+    };
+    return sets;
+}
+
+}  // namespace wavelobe::test

@@ -1,0 +1,200 @@
+// Lobes in double precision on the host, by the textbook formulas, for comparison with the kernels.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "shared/materials.h"
+
+namespace wavelobe::test {
+
+constexpr double pi = std::numbers::pi;
+
+inline glm::dvec3 to_double(const Packed3& v) { return {v.x, v.y, v.z}; }
+
+// ---- Fresnel --------------------------------------------------------------------------------------------
+
+// Mean of both polarizations for a complex relative index n; cos_i >= 0.
+inline double reference_fresnel(double cos_i, std::complex<double> n) {
+    const std::complex<double> cos_t = std::sqrt(1.0 - (1.0 - cos_i * cos_i) / (n * n));
+    const std::complex<double> s = (cos_i - n * cos_t) / (cos_i + n * cos_t);
+    const std::complex<double> p = (n * cos_i - cos_t) / (n * cos_i + cos_t);
+    return 0.5 * (std::norm(s) + std::norm(p));
+}
+
+// cos_i < 0: from the side of index eta.
+inline double reference_fresnel_dielectric(double cos_i, double eta) {
+    if (eta == 1.0) return 0.0;
+    const double n = cos_i < 0.0 ? 1.0 / eta : eta;
+    if (1.0 - cos_i * cos_i >= n * n) return 1.0;  // total reflection
+    return reference_fresnel(std::abs(cos_i), n);
+}
+
+inline glm::dvec3 reference_fresnel_conductor(const Material& m, double cos_i) {
+    return {reference_fresnel(cos_i, {m.eta.x, m.k.x}), reference_fresnel(cos_i, {m.eta.y, m.k.y}),
+            reference_fresnel(cos_i, {m.eta.z, m.k.z})};
+}
+
+// ---- microfacets ----------------------------------------------------------------------------------------
+
+// Density of normals m, Walter et al. 2007 with anisotropy.
+inline double reference_density(const Material& material, const glm::dvec3& m) {
+    const double au = material.alpha_u.value;
+    const double av = material.alpha_v.value;
+    if (m.z <= 0.0) return 0.0;
+    const double slope_squared = (m.x * m.x / (au * au) + m.y * m.y / (av * av)) / (m.z * m.z);
+    const double cos4 = m.z * m.z * m.z * m.z;
+    if (material.flags & MATERIAL_BECKMANN) return std::exp(-slope_squared) / (pi * au * av * cos4);
+    return 1.0 / (pi * au * av * cos4 * (1.0 + slope_squared) * (1.0 + slope_squared));
+}
+
+// Smith masking: exact, or Beckmann's by the rational fit of Walter et al.
+inline double reference_masking(const Material& material, const glm::dvec3& v, bool exact) {
+    const double slope = std::hypot(material.alpha_u.value * v.x, material.alpha_v.value * v.y) / std::abs(v.z);
+    if (!(material.flags & MATERIAL_BECKMANN)) return 2.0 / (1.0 + std::sqrt(1.0 + slope * slope));
+    const double a = 1.0 / slope;
+    if (exact) return 2.0 / (1.0 + std::erf(a) + std::exp(-a * a) / (a * std::sqrt(pi)));
+    if (a >= 1.6) return 1.0;
+    return (3.535 * a + 2.181 * a * a) / (1.0 + 2.276 * a + 2.577 * a * a);
+}
+
+// ---- glossy and diffuse lobes -----------------------------------------------------------------------------
+
+struct ReferenceValue {
+    glm::dvec3 f_cos{0.0};
+    double pdf = 0.0;
+};
+
+inline ReferenceValue reference_rough_conductor(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = reference_density(m, h);
+    const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
+    const double jacobian = 1.0 / (4.0 * glm::dot(wo, h));
+    return {to_double(m.specular.value) * reference_fresnel_conductor(m, glm::dot(wi, h)) * (d * g / (4.0 * wi.z)),
+            d * reference_masking(m, wi, true) * glm::dot(wi, h) / wi.z * jacobian};
+}
+
+inline ReferenceValue reference_rough_dielectric(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z == 0.0 || wo.z == 0.0) return {};
+    const double eta = wi.z > 0.0 ? m.eta.x : 1.0 / m.eta.x;  // behind the surface over before it
+    const bool reflects = wi.z * wo.z > 0.0;
+    glm::dvec3 h = glm::normalize(reflects ? wi + wo : wi + eta * wo);
+    if (h.z < 0.0) h = -h;
+    const double cos_i = glm::dot(wi, h);
+    const double cos_o = glm::dot(wo, h);
+    if (cos_i * wi.z <= 0.0 || cos_o * wo.z <= 0.0) return {};
+    const double fresnel = reference_fresnel_dielectric(cos_i, m.eta.x);
+    const double d = reference_density(m, h);
+    const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
+    const double visible = d * reference_masking(m, wi, true) * std::abs(cos_i / wi.z);
+    if (reflects) {
+        return {to_double(m.specular.value) * (fresnel * d * g / (4.0 * std::abs(wi.z))),
+                fresnel * visible / (4.0 * std::abs(cos_o))};
+    }
+    const double sum = cos_i + eta * cos_o;
+    const double jacobian = eta * eta * std::abs(cos_o) / (sum * sum);
+    return {to_double(m.transmission.value) *
+                ((1.0 - fresnel) * d * g * std::abs(cos_i / wi.z) * jacobian / (eta * eta)),
+            (1.0 - fresnel) * visible * jacobian};
+}
+
+inline ReferenceValue reference_phong(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const glm::dvec3 chord = wo - glm::dvec3{-wi.x, -wi.y, wi.z};
+    const double one_minus_cos = 0.5 * glm::dot(chord, chord);
+    if (one_minus_cos >= 1.0) return {};
+    const double n = m.exponent.value;
+    const double power = std::exp(n * std::log1p(-one_minus_cos));
+    return {to_double(m.specular.value) * ((n + 2.0) / (2.0 * pi) * power * wo.z), (n + 1.0) / (2.0 * pi) * power};
+}
+
+inline ReferenceValue reference_lambert(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    return {to_double(m.diffuse.value) * (wo.z / pi), wo.z / pi};
+}
+
+inline ReferenceValue reference_plastic_base(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const double eta = m.eta.x;
+    const glm::dvec3 diffuse = to_double(m.diffuse.value);
+    const glm::dvec3 tint = m.flags & MATERIAL_NONLINEAR ? diffuse : glm::dvec3{1.0};
+    const double transmitted = (1.0 - reference_fresnel_dielectric(wi.z, eta)) *
+                               (1.0 - reference_fresnel_dielectric(wo.z, eta)) / (eta * eta);
+    return {diffuse / (1.0 - tint * static_cast<double>(m.diffuse_fresnel_internal)) * (transmitted * wo.z / pi),
+            wo.z / pi};
+}
+
+using ReferenceEval = std::function<ReferenceValue(const Material&, const glm::dvec3&, const glm::dvec3&)>;
+
+// By the name of the lobe.
+inline const std::map<std::string, ReferenceEval>& reference_evals() {
+    static const std::map<std::string, ReferenceEval> evals{
+        {"rough_conductor", reference_rough_conductor}, {"rough_dielectric", reference_rough_dielectric},
+        {"phong", reference_phong},                     {"lambert", reference_lambert},
+        {"plastic_base", reference_plastic_base},
+    };
+    return evals;
+}
+
+// ---- delta lobes --------------------------------------------------------------------------------------------
+
+// What a delta lobe may do, in the order in which a rising random number chooses.
+struct DeltaBranch {
+    double probability;
+    glm::dvec3 wo;
+    glm::dvec3 weight;
+    double eta;
+};
+
+inline glm::dvec3 mirrored(const glm::dvec3& wi) { return {-wi.x, -wi.y, wi.z}; }
+
+inline std::vector<DeltaBranch> reference_mirror(const Material& m, const glm::dvec3& wi) {
+    const glm::dvec3 f = wi.z > 0.0 ? reference_fresnel_conductor(m, wi.z) : glm::dvec3{0.0};
+    return {{1.0, mirrored(wi), to_double(m.specular.value) * f, 1.0}};
+}
+
+inline std::vector<DeltaBranch> reference_dielectric(const Material& m, const glm::dvec3& wi) {
+    const double f = reference_fresnel_dielectric(wi.z, m.eta.x);
+    const double eta = wi.z >= 0.0 ? m.eta.x : 1.0 / m.eta.x;
+    const double cos_t = std::sqrt(std::max(1.0 - (1.0 - wi.z * wi.z) / (eta * eta), 0.0));
+    return {{f, mirrored(wi), to_double(m.specular.value), 1.0},
+            {1.0 - f,
+             {-wi.x / eta, -wi.y / eta, wi.z >= 0.0 ? -cos_t : cos_t},
+             to_double(m.transmission.value) / (eta * eta),
+             eta}};
+}
+
+inline std::vector<DeltaBranch> reference_thin_dielectric(const Material& m, const glm::dvec3& wi) {
+    const double r = reference_fresnel_dielectric(std::abs(wi.z), m.eta.x);
+    double pane = r;  // r + t r t + t r^3 t + ..., summed
+    for (double bounce = (1.0 - r) * (1.0 - r) * r; bounce > 1e-18 && r < 1.0; bounce *= r * r) pane += bounce;
+    return {{pane, mirrored(wi), to_double(m.specular.value), 1.0},
+            {1.0 - pane, -wi, to_double(m.transmission.value), 1.0}};
+}
+
+inline std::vector<DeltaBranch> reference_plastic_coat(const Material& m, const glm::dvec3& wi) {
+    const double f = wi.z > 0.0 ? reference_fresnel_dielectric(wi.z, m.eta.x) : 0.0;
+    return {{1.0, mirrored(wi), to_double(m.specular.value) * f, 1.0}};
+}
+
+using ReferenceDelta = std::function<std::vector<DeltaBranch>(const Material&, const glm::dvec3&)>;
+
+inline const std::map<std::string, ReferenceDelta>& reference_deltas() {
+    static const std::map<std::string, ReferenceDelta> deltas{
+        {"mirror", reference_mirror},
+        {"dielectric", reference_dielectric},
+        {"thin_dielectric", reference_thin_dielectric},
+        {"plastic_coat", reference_plastic_coat},
+    };
+    return deltas;
+}
+
+}  // namespace wavelobe::test
