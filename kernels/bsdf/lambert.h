@@ -7,16 +7,14 @@
 
 typedef struct {
     Rgb diffuse;
-    Float specular_weight;
 } LambertLobe;
 
 INLINE LambertLobe lambert_load(MaterialInput in) {
-    LambertLobe l = {load_rgb(in, diffuse), load_constant(in, specular_weight)};
+    LambertLobe l = {load_rgb(in, diffuse)};
     return l;
 }
 
-// Beside a Phong lobe its share is what that leaves; alone, the specular weight of its material is zero.
-INLINE Float lambert_weight(LambertLobe l, Vec3 wi) { return 1.0f - l.specular_weight; }
+INLINE Float lambert_weight(LambertLobe l, Vec3 wi) { return max_component(l.diffuse); }
 
 INLINE LobeValue lambert_eval(LambertLobe l, Vec3 wi, Vec3 wo) {
     Float pdf = wo.z * INV_PI;

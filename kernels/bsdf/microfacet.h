@@ -8,6 +8,7 @@
 #define WAVELOBE_BSDF_MICROFACET_H
 
 #include "bsdf/lobe.h"
+#include "core/erf.h"
 #include "core/rounding.h"
 
 // Which distributions the scene holds.

@@ -8,15 +8,15 @@
 
 typedef struct {
     Rgb specular;
-    Float exponent, specular_weight;
+    Float exponent;
 } PhongLobe;
 
 INLINE PhongLobe phong_load(MaterialInput in) {
-    PhongLobe l = {load_rgb(in, specular), load_float(in, exponent), load_constant(in, specular_weight)};
+    PhongLobe l = {load_rgb(in, specular), load_float(in, exponent)};
     return l;
 }
 
-INLINE Float phong_weight(PhongLobe l, Vec3 wi) { return l.specular_weight; }
+INLINE Float phong_weight(PhongLobe l, Vec3 wi) { return max_component(l.specular); }
 
 // log(1 - x), accurate for small x too: high exponents magnify its relative error.
 // Kahan's correction of the rounding in 1 - x (Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 1.14).

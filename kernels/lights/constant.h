@@ -12,12 +12,12 @@ INLINE Rgb constant_radiance(LightInput in, Vec3 direction) {
 }
 
 INLINE Float constant_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {
-    return (Float)(0.25f * INV_PI);
+    return (Float)INV_FOUR_PI_F;
 }
 
 INLINE LightSample constant_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
     Vec3 direction = square_to_uniform_sphere(u1, u2);
-    return infinite_light_sample(direction, constant_radiance(in, direction), (Float)(0.25f * INV_PI), !TRUE_MASK);
+    return infinite_light_sample(direction, constant_radiance(in, direction), (Float)INV_FOUR_PI_F, !TRUE_MASK);
 }
 
 #endif

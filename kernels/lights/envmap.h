@@ -35,12 +35,12 @@ INLINE EnvironmentPlace environment_place(LightInput in, Vec3 direction) {
     global const struct Environment *e = in.environment;
     Vec3 d = environment_turn(e->to_object.m, direction);
     Float columns = (Float)(float)e->cell_columns, rows = (Float)(float)e->cell_rows;
-    Float turns = lane_atan2(d.x, -d.z) * (0.5f * INV_PI);
+    Float turns = lane_atan2(d.x, -d.z) * INV_TWO_PI_F;
     Float x = madd(SELECT(turns < 0.0f, turns + 1.0f, turns), columns, (Float)-0.5f);
     Float column = floor(x);
     // From the distance to the axis, not from the cosine, which hardly changes near the poles.
     Float axis_distance = sqrt(madd(d.x, d.x, d.z * d.z));
-    Float y = lane_atan2(axis_distance, d.y) * INV_PI * rows;
+    Float y = lane_atan2(axis_distance, d.y) * INV_PI_F * rows;
     Float row = LESSER(floor(y), rows - 1.0f);
     EnvironmentPlace p;
     p.column = as_UInt(convert_Int(SELECT(column < 0.0f, columns - 1.0f, column)));
@@ -73,7 +73,7 @@ INLINE Rgb environment_radiance(LightInput in, EnvironmentPlace p) {
 // du dv = sin(theta)^-1 / (2 pi^2) domega
 INLINE Float environment_pdf(LightInput in, EnvironmentPlace p) {
     Float density = gather(in.environment_density, p.row * in.environment->cell_columns + p.column);
-    return density * (0.5f * INV_PI * INV_PI) / GREATER(p.sine, (Float)LEAST_POLE_SINE);
+    return density * (INV_TWO_PI_F * INV_PI_F) / GREATER(p.sine, (Float)LEAST_POLE_SINE);
 }
 
 INLINE Rgb envmap_radiance(LightInput in, Vec3 direction) {

@@ -26,7 +26,7 @@ INLINE SphereCone sphere_cone(AnalyticMap m, Vec3 reference) {
     c.sin2 = LESSER(r2 / d2, ONE);
     c.cosine = sqrt(1.0f - c.sin2);
     c.versine = c.sin2 / (1.0f + c.cosine);
-    c.pdf = SELECT(d2 > r2, 0.5f * INV_PI / c.versine, ZERO);
+    c.pdf = SELECT(d2 > r2, INV_TWO_PI_F / c.versine, ZERO);
     return c;
 }
 

@@ -88,9 +88,9 @@ typedef struct {
 INLINE void analytic_uv(UInt kind, Vec3 object, Float *u, Float *v) {
     Int sphere = kind == ANALYTIC_SPHERE, disk = kind == ANALYTIC_DISK;
     Float radius = sqrt(madd(object.x, object.x, object.y * object.y));
-    Float azimuth = lane_atan2(object.y, object.x) * (0.5f * INV_PI);
+    Float azimuth = lane_atan2(object.y, object.x) * INV_TWO_PI_F;
     azimuth = SELECT(azimuth < 0.0f, azimuth + 1.0f, azimuth);
-    Float height = SELECT(sphere, lane_atan2(radius, object.z) * INV_PI, object.z);
+    Float height = SELECT(sphere, lane_atan2(radius, object.z) * INV_PI_F, object.z);
     *u = SELECT(disk, radius, azimuth);
     *v = SELECT(disk, azimuth, height);
 }

@@ -3,6 +3,7 @@
 #ifndef WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 #define WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 
+#include "core/rounding.h"
 #include "shapes/ray.h"
 
 // The shear that turns the ray into the unit z axis, and the byte offsets of the permuted coordinates within a vertex.
@@ -51,6 +52,18 @@ INLINE float8 madd8(float8 a, float8 b, float8 c) {
     return a * b + c;
 }
 
+INLINE float8 largest_of(float8 a, float8 b, float8 c) { return GREATER(GREATER(fabs(a), fabs(b)), fabs(c)); }
+
+// Bound on the rounding error of a computed distance, from the sheared coordinates' largest magnitudes. A ray leaves a
+// surface from a point that is right to within its own bound (core/rounding.h); what the test says of that surface may be
+// off by this much more, so hits no farther than the bound are the surface itself.
+// Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing Rounding Error", bounding triangle intersections.
+INLINE float8 distance_error(float8 x, float8 y, float8 z, float8 area, float8 inverse) {
+    float8 dx = GAMMA(5) * (x + z), dy = GAMMA(5) * (y + z), dz = GAMMA(3) * z;
+    float8 d_area = 2.0f * (GAMMA(2) * x * y + dy * x + dx * y);
+    return 3.0f * (GAMMA(3) * area * z + d_area * z + dz * area) * fabs(inverse);
+}
+
 // Bit i of the result: triangle i is hit before `limit`; then t, u and v hold its distance and barycentrics.
 INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *s, float limit, float8 *t, float8 *u,
                                      float8 *v) {
@@ -71,7 +84,11 @@ INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *
     *t = s->sz * madd8(wa, az, madd8(wb, bz, wc * cz)) * inverse;
     *u = wb * inverse;
     *v = wc * inverse;
-    return lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (*t > 0.0f) & (*t < limit) & (det != 0.0f));
+    uint mask = lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (*t > 0.0f) & (*t < limit) & (det != 0.0f));
+    if (LIKELY(mask == 0u)) return 0u;
+    float8 error = distance_error(largest_of(ax, bx, cx), largest_of(ay, by, cy),
+                                  largest_of(az, bz, cz) * fabs(s->sz), largest_of(wa, wb, wc), inverse);
+    return mask & lane_bits8(*t > error);
 }
 
 #endif

@@ -268,9 +268,9 @@ TEST(Meshes, DamagedPlyFilesAreRefused) {
     const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     EXPECT_NE(fault(start + "999999999999" + vertices + faces + "0 0 0\n").message.find("too short"), std::string::npos);
     const Fault index = fault(start + "3" + vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
-    EXPECT_EQ(index.line, 12);
+    EXPECT_EQ(index.line, 13);
     EXPECT_NE(index.message.find("face 0"), std::string::npos);
-    EXPECT_EQ(fault(start + "3" + vertices + faces + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n").line, 10);
+    EXPECT_EQ(fault(start + "3" + vertices + faces + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n").line, 11);
     EXPECT_NE(fault("solid cube\n").message.find("not a PLY"), std::string::npos);
     EXPECT_NE(fault(start + "1" + vertices + "element other 99999999999999\nend_header\n0 0 0\n").message, "nothing");
 }

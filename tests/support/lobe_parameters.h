@@ -58,7 +58,6 @@ inline Material rough(Material m, float alpha_u, float alpha_v, Uint32 flags = 0
 
 inline Material phong(Material m, float exponent) {
     m.exponent.value = exponent;
-    m.specular_weight = 0.3F;
     return m;
 }
 

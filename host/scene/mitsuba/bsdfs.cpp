@@ -136,6 +136,7 @@ Bsdf read_phong(Query& query) {
 Bsdf read_twosided(Query& query) {
     query.boolean("allow_transmission", false);
     const std::vector<const Child*> nested = query.children("bsdf");
+    if (query.has_unresolved_children()) return {};
     if (nested.empty() || nested.size() > 2) {
         query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one for both sides, or one for each", "");
         return {};

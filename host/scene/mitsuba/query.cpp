@@ -246,6 +246,10 @@ std::vector<const Child*> Query::children(const std::string& tag) {
     return found;
 }
 
+bool Query::has_unresolved_children() const {
+    return std::any_of(object_.children.begin(), object_.children.end(), [](const Child& child) { return child.object == nullptr; });
+}
+
 void Query::accept(const std::vector<std::string>& names) { asked_.insert(asked_.end(), names.begin(), names.end()); }
 
 void Query::fault(const std::string& message, const std::string& hint) {

@@ -49,6 +49,8 @@ public:
 
     // The nested objects of one tag, named or not.
     std::vector<const Child*> children(const std::string& tag);
+    // Some reference leads nowhere; its fault is on record.
+    bool has_unresolved_children() const;
 
     // Known to the plugin, without an effect here.
     void accept(const std::vector<std::string>& names);
