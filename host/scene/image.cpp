@@ -38,13 +38,15 @@ Bitmap load_image(const std::string& path, Transfer transfer) {
     if (content.starts_with("\xff\xd8")) return decode_jpeg(path, content, transfer);
     if (content.starts_with("\x76\x2f\x31\x01")) return decode_exr(path);
     if (content.starts_with("#?")) return decode_radiance(path, content);
-    throw InputError(Fault{path, 0, 0, "", "not an image of a supported format; expected PNG, JPEG, OpenEXR or Radiance HDR",
+    throw InputError(Fault{path, 0, 0, "",
+                           "not an image of a supported format; expected PNG, JPEG, OpenEXR or Radiance HDR",
                            "convert the image"});
 }
 
 void reduce_to_luminance(Bitmap& image) {
     for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-        const float luminance = 0.212671F * image.rgb[i] + 0.715160F * image.rgb[i + 1] + 0.072169F * image.rgb[i + 2];
+        const float luminance =
+            0.212671F * image.rgb[i] + 0.715160F * image.rgb[i + 1] + 0.072169F * image.rgb[i + 2];
         std::fill_n(image.rgb.begin() + static_cast<std::ptrdiff_t>(i), 3, luminance);
     }
 }

@@ -26,8 +26,10 @@ std::array<std::string, 3> find_channels(const Imf::ChannelList& channels, const
         all += (all.empty() ? "" : ", ") + name;
         const bool full_size = channel.channel().xSampling == 1 && channel.channel().ySampling == 1;
         const auto take = [&](std::string& place) {
-            if (!place.empty()) refuse_image(path, "the image has more than one `" + last + "` channel; expected a single layer");
-            if (!full_size) refuse_image(path, "the channel `" + name + "` is subsampled; expected one value a pixel");
+            if (!place.empty())
+                refuse_image(path, "the image has more than one `" + last + "` channel; expected a single layer");
+            if (!full_size)
+                refuse_image(path, "the channel `" + name + "` is subsampled; expected one value a pixel");
             place = name;
         };
         if (last == "R" || last == "r") take(rgb[0]);
@@ -37,7 +39,8 @@ std::array<std::string, 3> find_channels(const Imf::ChannelList& channels, const
     }
     if (!rgb[0].empty() && !rgb[1].empty() && !rgb[2].empty()) return rgb;
     const bool other_colours = all.find('X') != std::string::npos || all.find("RY") != std::string::npos;
-    if (grey.empty() || other_colours) refuse_image(path, "the image has the channels " + all + "; expected R, G and B, or Y");
+    if (grey.empty() || other_colours)
+        refuse_image(path, "the image has the channels " + all + "; expected R, G and B, or Y");
     return {grey, grey, grey};
 }
 
@@ -48,7 +51,8 @@ void to_rec709(const Imf::Header& header, Bitmap& image) {
     const Imf::Chromaticities rec709;
     const auto differ = [](const Imath::V2f& a, const Imath::V2f& b) { return (a - b).length2(); };
     if (differ(file.red, rec709.red) + differ(file.green, rec709.green) + differ(file.blue, rec709.blue) +
-            differ(file.white, rec709.white) < 1e-6F)
+            differ(file.white, rec709.white) <
+        1e-6F)
         return;
     const Imath::M44f matrix = Imf::RGBtoXYZ(file, 1.0F) * Imf::XYZtoRGB(rec709, 1.0F);
     for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
@@ -75,9 +79,9 @@ Bitmap decode(const std::string& path) {
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     if (grey)
-        for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
-    else
-        to_rec709(file.header(), image);
+        for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3)
+            image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
+    else to_rec709(file.header(), image);
     return image;
 }
 

@@ -27,7 +27,8 @@ public:
             for (std::size_t x = 0; x < width; ++x) {
                 const Pixel& pixel = row[x];
                 const float scale = pixel[3] == 0 ? 0.0F : std::ldexp(1.0F, pixel[3] - (128 + 8));
-                for (std::size_t k = 0; k < 3; ++k) image.rgb[(y * width + x) * 3 + k] = static_cast<float>(pixel[k]) * scale;
+                for (std::size_t k = 0; k < 3; ++k)
+                    image.rgb[(y * width + x) * 3 + k] = static_cast<float>(pixel[k]) * scale;
             }
         }
         return image;
@@ -61,14 +62,16 @@ private:
     }
 
     std::uint8_t next() {
-        if (position_ >= content_.size()) refuse_image(path_, "damaged Radiance HDR: the file ends inside its data");
+        if (position_ >= content_.size())
+            refuse_image(path_, "damaged Radiance HDR: the file ends inside its data");
         return static_cast<std::uint8_t>(content_[position_++]);
     }
 
     void read_row(std::vector<Pixel>& row) {
         const bool may_be_packed = row.size() >= 8 && row.size() <= 0x7fff && position_ + 4 <= content_.size();
         const std::string start = may_be_packed ? content_.substr(position_, 4) : "";
-        if (!may_be_packed || start[0] != 2 || start[1] != 2 || (static_cast<std::uint8_t>(start[2]) & 0x80U) != 0) {
+        if (!may_be_packed || start[0] != 2 || start[1] != 2 ||
+            (static_cast<std::uint8_t>(start[2]) & 0x80U) != 0) {
             for (Pixel& pixel : row)
                 for (std::uint8_t& byte : pixel) byte = next();
             return;
@@ -85,7 +88,8 @@ private:
             const std::size_t code = next();
             const bool repeated = code > 128;
             const std::size_t length = repeated ? code - 128 : code;
-            if (length == 0 || length > row.size() - x) refuse_image(path_, "damaged Radiance HDR: a run is too long");
+            if (length == 0 || length > row.size() - x)
+                refuse_image(path_, "damaged Radiance HDR: a run is too long");
             std::uint8_t value = repeated ? next() : std::uint8_t{0};
             for (std::size_t k = 0; k < length; ++k) {
                 if (!repeated) value = next();
@@ -101,6 +105,8 @@ private:
 
 }  // namespace
 
-Bitmap decode_radiance(const std::string& path, const std::string& content) { return RadianceReader(path, content).read(); }
+Bitmap decode_radiance(const std::string& path, const std::string& content) {
+    return RadianceReader(path, content).read();
+}
 
 }  // namespace wavelobe

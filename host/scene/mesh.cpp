@@ -30,10 +30,12 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
 std::vector<glm::vec3> angle_weighted_normals(const TriangleMesh& mesh) {
     std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0.0));
     for (const glm::uvec3& triangle : mesh.triangles) {
-        const std::array<glm::dvec3, 3> p{mesh.positions[triangle.x], mesh.positions[triangle.y], mesh.positions[triangle.z]};
+        const std::array<glm::dvec3, 3> p{mesh.positions[triangle.x], mesh.positions[triangle.y],
+                                          mesh.positions[triangle.z]};
         const glm::dvec3 normal = glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]));
         for (std::size_t k = 0; k < 3; ++k)
-            sums[triangle[static_cast<int>(k)]] += normal * angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+            sums[triangle[static_cast<int>(k)]] +=
+                normal * angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
     }
     std::vector<glm::vec3> normals;
     normals.reserve(sums.size());
@@ -46,7 +48,8 @@ std::vector<glm::vec3> angle_weighted_normals(const TriangleMesh& mesh) {
 
 // Normals follow the inverse transpose; those a file leaves out or spoils are computed.
 void place_normals(std::vector<glm::vec3>& normals, const MeshOptions& options, const TriangleMesh& mesh) {
-    const glm::dmat3 to_world = glm::transpose(glm::inverse(glm::dmat3(options.to_world))) * (options.flip_normals ? -1.0 : 1.0);
+    const glm::dmat3 to_world =
+        glm::transpose(glm::inverse(glm::dmat3(options.to_world))) * (options.flip_normals ? -1.0 : 1.0);
     bool spoiled = false;
     for (glm::vec3& normal : normals) {
         const glm::dvec3 world = to_world * glm::dvec3(normal);

@@ -11,8 +11,8 @@ namespace wavelobe {
 
 struct MeshOptions {
     glm::dmat4 to_world{1.0};
-    bool face_normals = false;     // no shading normals, not even those of the file
-    bool flip_normals = false;     // turn the surface inside out
+    bool face_normals = false;  // no shading normals, not even those of the file
+    bool flip_normals = false;  // turn the surface inside out
 };
 
 // A mesh in the space of its file.

@@ -15,11 +15,18 @@ namespace {
 using namespace mitsuba;
 
 // Settings of the acceleration structures of other renderers: they change no picture.
-const std::vector<std::string> ignored_settings{
-    "allow_thread_reordering", "compact_acceleration_structures", "embree_use_robust_intersections",
-    "kd_intersection_cost",    "kd_traversal_cost",               "kd_empty_space_bonus",
-    "kd_stop_prims",           "kd_max_depth",                    "kd_min_max_bins",
-    "kd_clip",                 "kd_retract_bad_splits",           "kd_exact_primitive_threshold"};
+const std::vector<std::string> ignored_settings{"allow_thread_reordering",
+                                                "compact_acceleration_structures",
+                                                "embree_use_robust_intersections",
+                                                "kd_intersection_cost",
+                                                "kd_traversal_cost",
+                                                "kd_empty_space_bonus",
+                                                "kd_stop_prims",
+                                                "kd_max_depth",
+                                                "kd_min_max_bins",
+                                                "kd_clip",
+                                                "kd_retract_bad_splits",
+                                                "kd_exact_primitive_threshold"};
 
 void read_top_level(Context& context, const Object& object) {
     if (object.tag == "bsdf") read_bsdf(context, object);
@@ -30,7 +37,8 @@ void read_top_level(Context& context, const Object& object) {
     else if (object.tag == "integrator") read_integrator(context, object);
     else if (object.tag == "film") read_film(context, object);
     else if (object.tag != "sampler" && object.tag != "rfilter")
-        context.faults.add(object.place, object.label(), "a " + object.tag + " is not supported", "remove it from the scene");
+        context.faults.add(object.place, object.label(), "a " + object.tag + " is not supported",
+                           "remove it from the scene");
 }
 
 void read_scene_object(Context& context, const Object& root) {
@@ -38,7 +46,8 @@ void read_scene_object(Context& context, const Object& root) {
     query.accept(ignored_settings);
     for (const Property& property : root.properties)
         if (std::find(ignored_settings.begin(), ignored_settings.end(), property.name) == ignored_settings.end())
-            context.faults.add(property.place, root.label(), "unknown property `" + property.name + "`", "remove it");
+            context.faults.add(property.place, root.label(), "unknown property `" + property.name + "`",
+                               "remove it");
     for (const Child& child : root.children)
         if (child.object != nullptr) read_top_level(context, *child.object);
     if (context.sensors == 0)
@@ -62,9 +71,11 @@ Scene read_mitsuba_scene(const std::string& path, const Definitions& definitions
 }
 
 std::vector<SupportedPlugins> supported_plugins() {
-    return {{"integrator", integrator_types()}, {"sensor", sensor_types()},   {"sampler", sampler_types()},
-            {"film", film_types()},             {"rfilter", filter_types()},  {"bsdf", bsdf_types()},
-            {"texture", texture_types()},       {"shape", shape_types()},     {"emitter", emitter_types()}};
+    return {{"integrator", integrator_types()}, {"sensor", sensor_types()},
+            {"sampler", sampler_types()},       {"film", film_types()},
+            {"rfilter", filter_types()},        {"bsdf", bsdf_types()},
+            {"texture", texture_types()},       {"shape", shape_types()},
+            {"emitter", emitter_types()}};
 }
 
 }  // namespace wavelobe

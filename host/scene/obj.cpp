@@ -58,7 +58,9 @@ public:
         };
         callbacks.normal_cb = [](void* self, float x, float y, float z) { cast(self).add_normal({x, y, z}); };
         callbacks.texcoord_cb = [](void* self, float u, float v, float) { cast(self).add_uv({u, v}); };
-        callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) { cast(self).add_face(corners, count); };
+        callbacks.index_cb = [](void* self, tinyobj::index_t* corners, int count) {
+            cast(self).add_face(corners, count);
+        };
         tinyobj::LoadObjWithCallback(stream, callbacks, this);
         if (!faults_.empty()) throw InputError(std::move(faults_));
         if (!has_uvs_) mesh_.uvs.clear();
@@ -70,7 +72,8 @@ private:
     static ObjReader& cast(void* self) { return *static_cast<ObjReader*>(self); }
 
     void fault(const std::string& message) {
-        faults_.push_back({path_, buffer_->line_number(), 1, "", message, "correct the line or export the mesh again"});
+        faults_.push_back(
+            {path_, buffer_->line_number(), 1, "", message, "correct the line or export the mesh again"});
         if (faults_.size() >= max_faults) throw InputError(std::move(faults_));
     }
 
@@ -89,7 +92,9 @@ private:
             ++count;
             begin = end;
         }
-        if (count < least) fault("cannot read `" + std::string(line.substr(0, 80)) + "`; expected " + std::to_string(least) + " numbers");
+        if (count < least)
+            fault("cannot read `" + std::string(line.substr(0, 80)) + "`; expected " + std::to_string(least) +
+                  " numbers");
     }
 
     void add_position(const glm::vec3& position) {
@@ -114,7 +119,8 @@ private:
         if (number == 0 && optional) return none;
         const long long at = number > 0 ? number - 1LL : static_cast<long long>(count) + number;
         if (number != 0 && at >= 0 && at < static_cast<long long>(count)) return static_cast<std::uint32_t>(at);
-        fault(std::string("the face names ") + what + " " + std::to_string(number) + " of " + std::to_string(count));
+        fault(std::string("the face names ") + what + " " + std::to_string(number) + " of " +
+              std::to_string(count));
         return none;
     }
 
@@ -127,7 +133,8 @@ private:
             if (position == none) return;
             face_.push_back(vertex(position, uv, normal));
         }
-        for (std::size_t i = 2; i < face_.size(); ++i) mesh_.triangles.emplace_back(face_[0], face_[i - 1], face_[i]);
+        for (std::size_t i = 2; i < face_.size(); ++i)
+            mesh_.triangles.emplace_back(face_[0], face_[i - 1], face_[i]);
     }
 
     std::uint32_t vertex(std::uint32_t position, std::uint32_t uv, std::uint32_t normal) {
@@ -159,6 +166,8 @@ private:
 
 }  // namespace
 
-MeshSource load_obj(const std::string& path, bool flip_tex_coords) { return ObjReader(path, flip_tex_coords).read(); }
+MeshSource load_obj(const std::string& path, bool flip_tex_coords) {
+    return ObjReader(path, flip_tex_coords).read();
+}
 
 }  // namespace wavelobe

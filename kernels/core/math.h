@@ -15,7 +15,7 @@
 #define FOUR_PI_F 12.5663706143592f
 #define HALF_PI_F 1.57079632679490f
 #define QUARTER_PI_F 0.785398163397448f
-#define INV_PI_F 0.318309886183791f
+#define INV_PI 0.318309886183791f
 #define INV_TWO_PI_F 0.159154943091895f
 #define INV_FOUR_PI_F 0.0795774715459477f
 #define SQRT_PI_F 1.77245385090552f
@@ -61,12 +61,13 @@ INLINE void lane_sin_cos(Float x, Float *s, Float *c) {
     // pi / 2 in four parts; the first three have 11 bits so that their products with n are exact.
     Float r = madd(n, (Float)-1.5703125f, x);
     r = madd(n, (Float)-0.000483751296997f, r);
-    r = madd(n, (Float)-7.54953362e-8f, r);
-    r = madd(n, (Float)-2.56334415e-12f, r);
+    Float r12 = r;
+    r = madd(n, (Float)-7.54953362e-8f, r12);
+    Float r_rest = madd(n, (Float)-2.56334415e-12f, madd(n, (Float)-7.54953362e-8f, r12 - r));
     Float z = r * r;
     Float p = horner((Float)-0.00019518286f, z, 0.00833218917f);
     p = horner(p, z, -0.166666552f);
-    Float sin_r = madd(p, z * r, r);
+    Float sin_r = madd(p, z * r, r_rest) + r;
     p = horner((Float)2.44323273e-05f, z, -0.00138873095f);
     p = horner(p, z, 0.0416666456f);
     Float cos_r = madd(p, z * z, madd(z, (Float)-0.5f, ONE));
@@ -212,8 +213,10 @@ INLINE Float log2_extended(Float x, Float *rest) {
     Float low = product_error(s2, (Float)LOG2_E_F, high) + madd(tail, (Float)LOG2_E_F, s2 * LOG2_E_REST_F);
     Float sum = e + high;
     Float high_in_sum = sum - e;
-    *rest = low + ((e - (sum - high_in_sum)) + (high - high_in_sum));
-    return finish_logarithm(x, sum);
+    low += (e - (sum - high_in_sum)) + (high - high_in_sum);
+    Float y = sum + low;
+    *rest = low - (y - sum);
+    return finish_logarithm(x, y);
 }
 
 // base^exponent, base >= 0 (below: NaN), any exponent: 2.0 ulp. x^0 = 1^y = 1 for all x and y, 0^y = 0 and
@@ -229,13 +232,13 @@ INLINE Float lane_pow(Float base, Float exponent) {
 
 // ---- inverse trigonometric functions ----------------------------------------------------------------------------
 
-// asin x for |x| <= 1/2, z = x^2.
-INLINE Float asin_near_zero(Float x, Float z) {
+// asin x - x for |x| <= 1/2, z = x^2.
+INLINE Float asin_tail(Float x, Float z) {
     Float p = horner((Float)0.0421583056f, z, 0.0241847783f);
     p = horner(p, z, 0.0454691499f);
     p = horner(p, z, 0.0749530941f);
     p = horner(p, z, 0.166667521f);
-    return madd(p, z * x, x);
+    return p * (z * x);
 }
 
 // Arc sine in radians. |x| <= 1: 1.5 ulp; NaN outside. Beyond 1/2: asin x = pi/2 - 2 asin sqrt((1 - x) / 2).
@@ -243,9 +246,11 @@ INLINE Float lane_asin(Float x) {
     Float a = fabs(x);
     Int near_one = a > 0.5f;
     Float z = SELECT(near_one, madd(a, (Float)-0.5f, (Float)0.5f), a * a);
-    Float y = asin_near_zero(SELECT(near_one, sqrt(z), a), z);
-    Float complement = (HALF_PI_F - y) - y + HALF_PI_REST_F;
-    return copy_sign(SELECT(near_one, complement, SELECT(a <= 0.5f, y, LANE_NAN)), x);
+    Float r = SELECT(near_one, sqrt(z), a);
+    Float tail = asin_tail(r, z);
+    Float complement = madd(r, (Float)-2.0f, (Float)HALF_PI_F) - madd(tail, (Float)2.0f, (Float)-HALF_PI_REST_F);
+    Float y = SELECT(near_one, complement, r + tail);
+    return SELECT(y == y, copy_sign(y, x), y);
 }
 
 // Arc cosine in radians. |x| <= 1: 1.5 ulp; NaN outside.
@@ -253,7 +258,8 @@ INLINE Float lane_acos(Float x) {
     Float a = fabs(x);
     Int near_one = a > 0.5f;
     Float z = SELECT(near_one, madd(a, (Float)-0.5f, (Float)0.5f), a * a);
-    Float y = asin_near_zero(SELECT(near_one, sqrt(z), x), z);
+    Float r = SELECT(near_one, sqrt(z), x);
+    Float y = r + asin_tail(r, z);
     Float twice = y + y;
     Float outer = SELECT(x < 0.0f, (2.0f * HALF_PI_F - twice) + 2.0f * HALF_PI_REST_F, twice);
     Float inner = HALF_PI_F - (y - HALF_PI_REST_F);

@@ -40,7 +40,7 @@ INLINE EnvironmentPlace environment_place(LightInput in, Vec3 direction) {
     Float column = floor(x);
     // From the distance to the axis, not from the cosine, which hardly changes near the poles.
     Float axis_distance = sqrt(madd(d.x, d.x, d.z * d.z));
-    Float y = lane_atan2(axis_distance, d.y) * INV_PI_F * rows;
+    Float y = lane_atan2(axis_distance, d.y) * INV_PI * rows;
     Float row = LESSER(floor(y), rows - 1.0f);
     EnvironmentPlace p;
     p.column = as_UInt(convert_Int(SELECT(column < 0.0f, columns - 1.0f, column)));
@@ -73,7 +73,7 @@ INLINE Rgb environment_radiance(LightInput in, EnvironmentPlace p) {
 // du dv = sin(theta)^-1 / (2 pi^2) domega
 INLINE Float environment_pdf(LightInput in, EnvironmentPlace p) {
     Float density = gather(in.environment_density, p.row * in.environment->cell_columns + p.column);
-    return density * (INV_TWO_PI_F * INV_PI_F) / GREATER(p.sine, (Float)LEAST_POLE_SINE);
+    return density * (INV_TWO_PI_F * INV_PI) / GREATER(p.sine, (Float)LEAST_POLE_SINE);
 }
 
 INLINE Rgb envmap_radiance(LightInput in, Vec3 direction) {

@@ -90,7 +90,7 @@ INLINE void analytic_uv(UInt kind, Vec3 object, Float *u, Float *v) {
     Float radius = sqrt(madd(object.x, object.x, object.y * object.y));
     Float azimuth = lane_atan2(object.y, object.x) * INV_TWO_PI_F;
     azimuth = SELECT(azimuth < 0.0f, azimuth + 1.0f, azimuth);
-    Float height = SELECT(sphere, lane_atan2(radius, object.z) * INV_PI_F, object.z);
+    Float height = SELECT(sphere, lane_atan2(radius, object.z) * INV_PI, object.z);
     *u = SELECT(disk, radius, azimuth);
     *v = SELECT(disk, azimuth, height);
 }

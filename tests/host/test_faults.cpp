@@ -23,13 +23,14 @@ void expect_fault(const std::string& xml, const std::string& text) {
 
 TEST(Faults, AllOfAFileAtOnceWithTheirPlaces) {
     const SceneFolder folder;
-    const auto faults = folder.element_faults("<bsdf type=\"principled\"/>\n"
-                                              "  <shape type=\"sphere\">\n"
-                                              "    <float name=\"radius\" value=\"wide\"/>\n"
-                                              "    <float name=\"raduis\" value=\"1\"/>\n"
-                                              "    <ref id=\"nothing\"/>\n"
-                                              "  </shape>\n"
-                                              "<emitter type=\"sun\"/>");
+    const auto faults = folder.element_faults(
+        "<bsdf type=\"principled\"/>\n"
+        "  <shape type=\"sphere\">\n"
+        "    <float name=\"radius\" value=\"wide\"/>\n"
+        "    <float name=\"raduis\" value=\"1\"/>\n"
+        "    <ref id=\"nothing\"/>\n"
+        "  </shape>\n"
+        "<emitter type=\"sun\"/>");
     std::vector<std::string> places;
     for (const Fault& fault : faults) {
         EXPECT_EQ(fault.file, folder.path("scene.xml"));
@@ -51,9 +52,7 @@ TEST(Faults, XmlThatIsNotWellFormed) {
     EXPECT_EQ(folder.faults("<bsdf version=\"3.0.0\" type=\"diffuse\"/>").size(), 1U);
 }
 
-TEST(Faults, MissingSceneFile) {
-    EXPECT_THROW(read_mitsuba_scene(SceneFolder().path("absent.xml")), InputError);
-}
+TEST(Faults, MissingSceneFile) { EXPECT_THROW(read_mitsuba_scene(SceneFolder().path("absent.xml")), InputError); }
 
 TEST(Faults, Versions) {
     const SceneFolder folder;
@@ -76,20 +75,30 @@ TEST(Faults, Substitution) {
 }
 
 TEST(Faults, Values) {
-    const auto radius = [](const std::string& value) { return "<shape type=\"sphere\"><float name=\"radius\" value=\"" + value + "\"/></shape>"; };
-    for (const char* value : {"", "1,5", "nan", "inf", "1e999", "0x10", "1 2"}) expect_fault(radius(value), "expected a finite number");
-    expect_fault("<integrator type=\"path\"><integer name=\"max_depth\" value=\"1.5\"/></integrator>", "a whole number");
+    const auto radius = [](const std::string& value) {
+        return "<shape type=\"sphere\"><float name=\"radius\" value=\"" + value + "\"/></shape>";
+    };
+    for (const char* value : {"", "1,5", "nan", "inf", "1e999", "0x10", "1 2"})
+        expect_fault(radius(value), "expected a finite number");
+    expect_fault("<integrator type=\"path\"><integer name=\"max_depth\" value=\"1.5\"/></integrator>",
+                 "a whole number");
     expect_fault("<integrator type=\"path\"><integer name=\"max_depth\" value=\"-2\"/></integrator>", "from -1 to");
     expect_fault("<integrator type=\"path\"><integer name=\"rr_depth\" value=\"0\"/></integrator>", "from 1 to");
-    expect_fault("<integrator type=\"path\"><float name=\"max_depth\" value=\"2\"/></integrator>", "give it as <integer>");
-    expect_fault("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"yes\"/></integrator>", "`true` or `false`");
+    expect_fault("<integrator type=\"path\"><float name=\"max_depth\" value=\"2\"/></integrator>",
+                 "give it as <integer>");
+    expect_fault("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"yes\"/></integrator>",
+                 "`true` or `false`");
     expect_fault("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"1, 2\"/></bsdf>", "one or three");
     expect_fault("<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"0, 0, 1.5\"/></bsdf>", "from 0 to 1");
-    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:1, 700:0\"/></bsdf>", "wavelength:value");
-    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"a.spd\"/></bsdf>", "spectra from files");
-    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" type=\"blackbody\"/></bsdf>", "not supported");
+    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" value=\"400:1, 700:0\"/></bsdf>",
+                 "wavelength:value");
+    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" filename=\"a.spd\"/></bsdf>",
+                 "spectra from files");
+    expect_fault("<bsdf type=\"diffuse\"><spectrum name=\"reflectance\" type=\"blackbody\"/></bsdf>",
+                 "not supported");
     expect_fault("<bsdf type=\"conductor\"><string name=\"material\" value=\"au\"/></bsdf>", "did you mean `Au`?");
-    expect_fault("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"watre\"/></bsdf>", "did you mean `water`?");
+    expect_fault("<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"watre\"/></bsdf>",
+                 "did you mean `water`?");
     expect_fault("<emitter type=\"point\"><rgb name=\"intensity\" value=\"-1\"/></emitter>", "not negative");
     expect_fault("<emitter type=\"directional\"><vector name=\"direction\" value=\"0, 0, 0\"/></emitter>", "zero");
     expect_fault("<shape type=\"sphere\"><point name=\"center\" x=\"1\" y=\"2\"/></shape>", "`z` is missing");
@@ -106,9 +115,13 @@ TEST(Faults, Transforms) {
     expect_fault(transform("<scale value=\"1\" x=\"2\"/>"), "cannot be combined");
     expect_fault(transform("<scale x=\"0\"/>"), "not an invertible");
     expect_fault(transform("<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>"), "not an invertible");
-    expect_fault("<shape type=\"sphere\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>", "unevenly");
-    expect_fault("<shape type=\"cylinder\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>", "unevenly");
-    expect_fault("<sensor type=\"perspective\"><transform name=\"to_world\"><scale value=\"2\"/></transform></sensor>", "cannot scale");
+    expect_fault("<shape type=\"sphere\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>",
+                 "unevenly");
+    expect_fault("<shape type=\"cylinder\"><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>",
+                 "unevenly");
+    expect_fault(
+        "<sensor type=\"perspective\"><transform name=\"to_world\"><scale value=\"2\"/></transform></sensor>",
+        "cannot scale");
     expect_fault("<scale value=\"2\"/>", "only a <transform>");
 }
 
@@ -116,11 +129,16 @@ TEST(Faults, Structure) {
     expect_fault("<shpae type=\"sphere\"/>", "did you mean `shape`?");
     expect_fault("<shape type=\"sphere\" name=\"a\" colour=\"red\"/>", "unexpected attribute `colour`");
     expect_fault("<shape/>", "`type` is missing");
-    expect_fault("<shape type=\"sphere\"><float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"2\"/></shape>", "more than once");
+    expect_fault(
+        "<shape type=\"sphere\"><float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"2\"/></shape>",
+        "more than once");
     expect_fault("<shape type=\"sphere\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>", "is taken by line 2");
-    expect_fault("<shape type=\"sphere\"><bsdf type=\"diffuse\"/><bsdf type=\"diffuse\"/></shape>", "more than one bsdf");
-    expect_fault("<shape type=\"sphere\"><texture type=\"checkerboard\" name=\"colour\"/></shape>", "cannot hold a nested texture");
-    expect_fault("<shape type=\"sphere\"><float name=\"radius\" value=\"1\"><scale/></float></shape>", "cannot be nested");
+    expect_fault("<shape type=\"sphere\"><bsdf type=\"diffuse\"/><bsdf type=\"diffuse\"/></shape>",
+                 "more than one bsdf");
+    expect_fault("<shape type=\"sphere\"><texture type=\"checkerboard\" name=\"colour\"/></shape>",
+                 "cannot hold a nested texture");
+    expect_fault("<shape type=\"sphere\"><float name=\"radius\" value=\"1\"><scale/></float></shape>",
+                 "cannot be nested");
     expect_fault("<bsdf type=\"twosided\"/>", "holds 0 nested");
     expect_fault("<bsdf type=\"twosided\"><bsdf type=\"dielectric\"/></bsdf>", "transmits light");
     expect_fault("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>", "refers back");
@@ -131,7 +149,8 @@ TEST(Faults, Structure) {
     expect_fault("<alias id=\"a\" as=\"b\"/>", "no object before this line");
     expect_fault("<shape type=\"obj\"/>", "`filename` is missing");
     expect_fault("<shape type=\"obj\"><string name=\"filename\" value=\"absent.obj\"/></shape>", "does not exist");
-    expect_fault("<emitter type=\"constant\"><texture type=\"checkerboard\" name=\"radiance\"/></emitter>", "cannot vary");
+    expect_fault("<emitter type=\"constant\"><texture type=\"checkerboard\" name=\"radiance\"/></emitter>",
+                 "cannot vary");
     expect_fault("<medium type=\"homogeneous\"/>", "a medium is not supported");
     expect_fault("<float name=\"gamma\" value=\"1\"/>", "unknown property `gamma`");
 }
@@ -156,7 +175,8 @@ TEST(Faults, IncludeLoopsAndAbsentIncludes) {
 TEST(Faults, OfMeshFilesNameTheFileAndTheShape) {
     const SceneFolder folder;
     folder.write("m.obj", "v 0 0 0\nf 1 2 3\n");
-    const auto faults = folder.element_faults("<shape type=\"obj\" id=\"chair\"><string name=\"filename\" value=\"m.obj\"/></shape>");
+    const auto faults = folder.element_faults(
+        "<shape type=\"obj\" id=\"chair\"><string name=\"filename\" value=\"m.obj\"/></shape>");
     ASSERT_EQ(faults.size(), 1U);
     EXPECT_EQ(faults[0].file, folder.path("m.obj"));
     EXPECT_EQ(faults[0].line, 2);

@@ -106,7 +106,8 @@ TEST(Images, OpenExrIsLinear) {
         file.setFrameBuffer(pixels.data(), 1, 2);
         file.writePixels(1);
     }
-    EXPECT_EQ(load_image(folder.path("a.exr"), Transfer::of_format).rgb, (std::vector<float>{0.5F, 2, 0.25F, 1, 8, 0}));
+    EXPECT_EQ(load_image(folder.path("a.exr"), Transfer::of_format).rgb,
+              (std::vector<float>{0.5F, 2, 0.25F, 1, 8, 0}));
     {
         Imf::RgbaOutputFile file(folder.path("y.exr").c_str(), 2, 1, Imf::WRITE_Y);
         file.setFrameBuffer(pixels.data(), 1, 2);
@@ -121,7 +122,8 @@ TEST(Images, RadianceFlatAndPacked) {
     const SceneFolder folder;
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X ";
     folder.write("flat.hdr", header + "2\n" + std::string("\x80\x40\x20\x81\x01\x02\x03\x00", 8));
-    EXPECT_EQ(load_image(folder.path("flat.hdr"), Transfer::of_format).rgb, (std::vector<float>{1, 0.5F, 0.25F, 0, 0, 0}));
+    EXPECT_EQ(load_image(folder.path("flat.hdr"), Transfer::of_format).rgb,
+              (std::vector<float>{1, 0.5F, 0.25F, 0, 0, 0}));
     // Eight pixels: red all alike, green one by one, blue and the exponent alike.
     const std::string packed("\x02\x02\x00\x08\x88\x80\x08\x00\x10\x20\x30\x40\x50\x60\x70\x88\x00\x88\x82", 19);
     folder.write("packed.hdr", header + "8\n" + packed);

@@ -7,7 +7,9 @@ namespace wavelobe::test {
 namespace {
 
 // The scene of a sphere with this BSDF.
-Scene with_bsdf(const std::string& xml) { return SceneFolder().elements("<shape type=\"sphere\">" + xml + "</shape>"); }
+Scene with_bsdf(const std::string& xml) {
+    return SceneFolder().elements("<shape type=\"sphere\">" + xml + "</shape>");
+}
 
 template <typename Model>
 Model model_of(const std::string& xml) {
@@ -72,7 +74,8 @@ TEST(Materials, Sides) {
     EXPECT_EQ(sides(R"(<bsdf type="conductor"/>)").back, -1);
     const auto same = sides(R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)");
     EXPECT_EQ(same.back, same.front);
-    const Scene two = with_bsdf(R"(<bsdf type="twosided"><bsdf type="diffuse" id="a"/><bsdf type="plastic" id="b"/></bsdf>)");
+    const Scene two =
+        with_bsdf(R"(<bsdf type="twosided"><bsdf type="diffuse" id="a"/><bsdf type="plastic" id="b"/></bsdf>)");
     EXPECT_EQ(two.materials.at(static_cast<std::size_t>(two.shapes[0].material.front)).name, "a");
     EXPECT_EQ(two.materials.at(static_cast<std::size_t>(two.shapes[0].material.back)).name, "b");
 }

@@ -13,11 +13,14 @@
 namespace wavelobe::test {
 namespace {
 
-const TriangleMesh& mesh_of(const Scene& scene, std::size_t i = 0) { return std::get<TriangleMesh>(scene.shapes.at(i).geometry); }
+const TriangleMesh& mesh_of(const Scene& scene, std::size_t i = 0) {
+    return std::get<TriangleMesh>(scene.shapes.at(i).geometry);
+}
 
 glm::vec3 geometric_normal(const TriangleMesh& mesh, std::size_t triangle) {
     const glm::uvec3& t = mesh.triangles.at(triangle);
-    return glm::normalize(glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+    return glm::normalize(
+        glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
 }
 
 void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-5F) {
@@ -30,7 +33,9 @@ std::string shape(const std::string& type, const std::string& inside) {
     return "<shape type=\"" + type + "\">" + inside + "</shape>";
 }
 
-std::string to_world(const std::string& operations) { return "<transform name=\"to_world\">" + operations + "</transform>"; }
+std::string to_world(const std::string& operations) {
+    return "<transform name=\"to_world\">" + operations + "</transform>";
+}
 
 const std::string flip = R"(<boolean name="flip_normals" value="true"/>)";
 const std::string mirror = to_world(R"(<scale x="-1"/>)");
@@ -46,7 +51,8 @@ TEST(Meshes, RectangleFacesPlusZ) {
 }
 
 TEST(Meshes, RectangleKeepsItsSideUnderMirroringAndItsUvUnderFlips) {
-    const Scene scene = SceneFolder().elements(shape("rectangle", mirror) + shape("rectangle", flip) + shape("rectangle", flip + mirror) +
+    const Scene scene = SceneFolder().elements(shape("rectangle", mirror) + shape("rectangle", flip) +
+                                               shape("rectangle", flip + mirror) +
                                                shape("rectangle", to_world(R"(<scale z="-1"/>)")));
     const std::vector<float> sides{1.0F, -1.0F, -1.0F, -1.0F};
     for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -69,7 +75,8 @@ TEST(Meshes, CubeShowsItsOutside) {
         ASSERT_EQ(mesh.triangles.size(), 12U);
         EXPECT_FALSE(mesh.parallelogram);
         for (std::size_t t = 0; t < 12; ++t) {
-            const glm::vec3 centre = mesh.positions[mesh.triangles[t].x] + mesh.positions[mesh.triangles[t].y] + mesh.positions[mesh.triangles[t].z];
+            const glm::vec3 centre = mesh.positions[mesh.triangles[t].x] + mesh.positions[mesh.triangles[t].y] +
+                                     mesh.positions[mesh.triangles[t].z];
             EXPECT_EQ(glm::dot(centre, geometric_normal(mesh, t)) > 0.0F, i != 2);
         }
     }
@@ -84,9 +91,13 @@ TEST(Meshes, CubeShowsItsOutside) {
 TEST(Meshes, AnalyticShapes) {
     const Scene scene = SceneFolder().elements(
         shape("sphere", R"(<point name="center" x="1" y="2" z="3"/><float name="radius" value="0.5"/>)") +
-        shape("cylinder", R"(<point name="p0" x="1" y="0" z="0"/><point name="p1" x="1" y="3" z="0"/><float name="radius" value="0.25"/>)") +
+        shape(
+            "cylinder",
+            R"(<point name="p0" x="1" y="0" z="0"/><point name="p1" x="1" y="3" z="0"/><float name="radius" value="0.25"/>)") +
         shape("disk", flip) + shape("sphere", mirror) + shape("cylinder", mirror) + shape("sphere", mirror + flip));
-    const auto matrix = [&](std::size_t i) { return std::get<AnalyticShape>(scene.shapes.at(i).geometry).to_world; };
+    const auto matrix = [&](std::size_t i) {
+        return std::get<AnalyticShape>(scene.shapes.at(i).geometry).to_world;
+    };
     EXPECT_EQ(matrix(0) * glm::vec4(1, 0, 0, 1), glm::vec4(1.5F, 2, 3, 1));
     expect_near(glm::vec3(matrix(1) * glm::vec4(0, 0, 1, 1)), {1, 3, 0});
     EXPECT_NEAR(glm::length(glm::vec3(matrix(1)[0])), 0.25F, 1e-6F);
@@ -119,8 +130,9 @@ std::string obj(const std::string& file, const std::string& more = "") {
 TEST(Meshes, ObjQuadsNegativeIndicesAndSeams) {
     const SceneFolder folder;
     folder.write("a.obj", quad_obj);
-    const Scene scene = folder.elements(obj("a.obj") + obj("a.obj", R"(<boolean name="flip_tex_coords" value="false"/>)") +
-                                        obj("a.obj", R"(<boolean name="face_normals" value="true"/>)"));
+    const Scene scene =
+        folder.elements(obj("a.obj") + obj("a.obj", R"(<boolean name="flip_tex_coords" value="false"/>)") +
+                        obj("a.obj", R"(<boolean name="face_normals" value="true"/>)"));
     const TriangleMesh& mesh = mesh_of(scene);
     // 3/3 and 3/1 are two vertices, 1/1 and 4/4 are shared.
     EXPECT_EQ(mesh.positions.size(), 5U);
@@ -152,7 +164,8 @@ TEST(Meshes, ComputedNormalsAreWeightedByAngle) {
 TEST(Meshes, NormalsOfTheFileFollowTheInverseTranspose) {
     const SceneFolder folder;
     folder.write("n.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 3 4\nf 1//1 2//1 3//1\n");
-    const Scene scene = folder.elements(obj("n.obj", to_world(R"(<scale x="1" y="3" z="4"/>)")) + obj("n.obj", mirror) + obj("n.obj", flip));
+    const Scene scene = folder.elements(obj("n.obj", to_world(R"(<scale x="1" y="3" z="4"/>)")) +
+                                        obj("n.obj", mirror) + obj("n.obj", flip));
     const float half = std::sqrt(0.5F);
     expect_near(mesh_of(scene).normals[0], {0, half, half});
     // Normals of the file stay on their side under mirroring, and the winding with them.
@@ -173,7 +186,9 @@ TEST(Meshes, CornersWithoutANormalGetAComputedOne) {
 
 TEST(Meshes, TrianglesWithoutAreaAreLeftOutWithAWarning) {
     const SceneFolder folder;
-    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 2 0 0\nv 1e39 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 2\nf 1 2 6\n");
+    folder.write(
+        "a.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 2 0 0\nv 1e39 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 2\nf 1 2 6\n");
     folder.write("none.obj", "v 0 0 0\nf 1 1 1\n");
     const Scene scene = folder.elements(obj("a.obj") + obj("none.obj"));
     ASSERT_EQ(scene.shapes.size(), 1U);
@@ -203,11 +218,16 @@ struct PlyWriter {
 };
 
 std::string ply_text(bool ascii, bool big) {
-    PlyWriter writer{ascii, big, "ply\nformat " + std::string(ascii ? "ascii" : big ? "binary_big_endian" : "binary_little_endian") +
-                                     " 1.0\ncomment by hand\nelement extra 2\nproperty list uchar short data\nproperty double more\n"
-                                     "element vertex 5\nproperty double x\nproperty float32 y\nproperty float z\nproperty uchar red\n"
-                                     "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n"
-                                     "element face 2\nproperty int flags\nproperty list uint8 uint vertex_index\nend_header\n"};
+    PlyWriter writer{
+        ascii, big,
+        "ply\nformat " +
+            std::string(ascii ? "ascii"
+                        : big ? "binary_big_endian"
+                              : "binary_little_endian") +
+            " 1.0\ncomment by hand\nelement extra 2\nproperty list uchar short data\nproperty double more\n"
+            "element vertex 5\nproperty double x\nproperty float32 y\nproperty float z\nproperty uchar red\n"
+            "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n"
+            "element face 2\nproperty int flags\nproperty list uint8 uint vertex_index\nend_header\n"};
     for (int i = 0; i < 2; ++i) {
         writer.put<std::uint8_t>(2);
         writer.put<std::int16_t>(-5);
@@ -224,7 +244,8 @@ std::string ply_text(bool ascii, bool big) {
         writer.put(corner.x);
         writer.put(0.25F);
     }
-    for (const std::vector<std::uint32_t>& face : {std::vector<std::uint32_t>{0, 1, 2, 3}, std::vector<std::uint32_t>{1, 4, 2}}) {
+    for (const std::vector<std::uint32_t>& face :
+         {std::vector<std::uint32_t>{0, 1, 2, 3}, std::vector<std::uint32_t>{1, 4, 2}}) {
         writer.put<std::int32_t>(-1);
         writer.put(static_cast<std::uint8_t>(face.size()));
         for (const std::uint32_t index : face) writer.put(index);
@@ -256,29 +277,34 @@ TEST(Meshes, DamagedPlyFilesAreRefused) {
         return Fault{};
     };
     const std::string binary = ply_text(false, false);
-    for (std::size_t size = 0; size < binary.size(); ++size) EXPECT_NE(fault(binary.substr(0, size)).message, "") << size;
+    for (std::size_t size = 0; size < binary.size(); ++size)
+        EXPECT_NE(fault(binary.substr(0, size)).message, "") << size;
     const std::string ascii = ply_text(true, false);
     // The last character is a blank, the one before a digit.
-    for (std::size_t size = 0; size + 2 < ascii.size(); ++size) EXPECT_NE(fault(ascii.substr(0, size)).message, "") << size;
+    for (std::size_t size = 0; size + 2 < ascii.size(); ++size)
+        EXPECT_NE(fault(ascii.substr(0, size)).message, "") << size;
 
     const Fault type = fault("ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n");
     EXPECT_EQ(type.line, 4);
     const std::string start = "ply\nformat ascii 1.0\nelement vertex ";
     const std::string vertices = "\nproperty float x\nproperty float y\nproperty float z\n";
     const std::string faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    EXPECT_NE(fault(start + "999999999999" + vertices + faces + "0 0 0\n").message.find("too short"), std::string::npos);
+    EXPECT_NE(fault(start + "999999999999" + vertices + faces + "0 0 0\n").message.find("too short"),
+              std::string::npos);
     const Fault index = fault(start + "3" + vertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
     EXPECT_EQ(index.line, 13);
     EXPECT_NE(index.message.find("face 0"), std::string::npos);
     EXPECT_EQ(fault(start + "3" + vertices + faces + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n").line, 11);
     EXPECT_NE(fault("solid cube\n").message.find("not a PLY"), std::string::npos);
-    EXPECT_NE(fault(start + "1" + vertices + "element other 99999999999999\nend_header\n0 0 0\n").message, "nothing");
+    EXPECT_NE(fault(start + "1" + vertices + "element other 99999999999999\nend_header\n0 0 0\n").message,
+              "nothing");
 }
 
 TEST(Meshes, DamagedObjFilesAreRefusedByLine) {
     const SceneFolder folder;
     try {
-        load_obj(folder.write("m.obj", "v 0 0 0\nv 1 zero 0\n\nv 0 1 0\r\nf 1 2 9\nvt 1\nf 1/7 2 3\nf 0 1 2\n"), true);
+        load_obj(folder.write("m.obj", "v 0 0 0\nv 1 zero 0\n\nv 0 1 0\r\nf 1 2 9\nvt 1\nf 1/7 2 3\nf 0 1 2\n"),
+                 true);
         FAIL();
     } catch (const InputError& error) {
         std::vector<int> lines;

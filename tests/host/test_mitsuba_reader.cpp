@@ -76,11 +76,15 @@ TEST(MitsubaReader, ReferencesMayComeFirst) {
 
 TEST(MitsubaReader, ReadsIncludes) {
     const SceneFolder folder;
-    folder.write("parts/inner.xml", R"(<scene version="3.0.0"><shape type="ply"><string name="filename" value="mesh.ply"/></shape></scene>)");
-    folder.write("parts/mesh.ply",
-                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    folder.write("parts/material.xml", R"(<bsdf version="3.0.0" type="diffuse" id="m"><float name="reflectance" value="$grey"/></bsdf>)");
+    folder.write(
+        "parts/inner.xml",
+        R"(<scene version="3.0.0"><shape type="ply"><string name="filename" value="mesh.ply"/></shape></scene>)");
+    folder.write(
+        "parts/mesh.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    folder.write("parts/material.xml",
+                 R"(<bsdf version="3.0.0" type="diffuse" id="m"><float name="reflectance" value="$grey"/></bsdf>)");
     const Scene scene = folder.elements(R"(
         <default name="grey" value="0.25"/>
         <include filename="parts/inner.xml"/>
@@ -100,9 +104,13 @@ TEST(MitsubaReader, AppliesTransformsInOrder) {
         <shape type="disk"><transform name="to_world"><matrix value="1 2 3 4  0 1 0 5  0 0 1 6  0 0 0 1"/></transform></shape>
         <shape type="disk"><transform name="to_world"><matrix value="1, 2, 3, 0, 1, 0, 0, 0, -4.5e-001"/></transform></shape>
         <shape type="disk"><transform name="to_world"><lookat origin="1, 2, 3" target="1, 2, 8" up="0, 1, 0"/></transform></shape>)");
-    const auto matrix = [&](std::size_t i) { return std::get<AnalyticShape>(scene.shapes.at(i).geometry).to_world; };
-    EXPECT_EQ(matrix(0), glm::mat4(glm::vec4(2, 0, 0, 0), glm::vec4(0, 2, 0, 0), glm::vec4(0, 0, 2, 0), glm::vec4(1, 2, 3, 1)));
-    EXPECT_EQ(matrix(1), glm::mat4(glm::vec4(2, 0, 0, 0), glm::vec4(0, 3, 0, 0), glm::vec4(0, 0, 1, 0), glm::vec4(2, 0, 0, 1)));
+    const auto matrix = [&](std::size_t i) {
+        return std::get<AnalyticShape>(scene.shapes.at(i).geometry).to_world;
+    };
+    EXPECT_EQ(matrix(0), glm::mat4(glm::vec4(2, 0, 0, 0), glm::vec4(0, 2, 0, 0), glm::vec4(0, 0, 2, 0),
+                                   glm::vec4(1, 2, 3, 1)));
+    EXPECT_EQ(matrix(1), glm::mat4(glm::vec4(2, 0, 0, 0), glm::vec4(0, 3, 0, 0), glm::vec4(0, 0, 1, 0),
+                                   glm::vec4(2, 0, 0, 1)));
     EXPECT_NEAR(glm::distance(matrix(2) * glm::vec4(1, 0, 0, 1), glm::vec4(0, 1, 0, 1)), 0.0F, 1e-6F);
     EXPECT_EQ(matrix(3) * glm::vec4(0, 1, 0, 1), glm::vec4(6, 6, 6, 1));
     EXPECT_EQ(matrix(4) * glm::vec4(0, 0, 1, 1), glm::vec4(3, 0, -0.45F, 1));
@@ -154,9 +162,10 @@ TEST(MitsubaReader, ResolvesTheAxisOfTheFieldOfView) {
         {fov + "larger\"/>", {50.0F, 31.26160F}}};
     const SceneFolder folder;
     const auto degrees = [&](const std::string& properties, int width, int height) {
-        return folder.read("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + properties +
-                           "<film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(width) +
-                           "\"/><integer name=\"height\" value=\"" + std::to_string(height) + "\"/></film></sensor></scene>")
+        return folder
+            .read("<scene version=\"3.0.0\"><sensor type=\"perspective\">" + properties +
+                  "<film type=\"hdrfilm\"><integer name=\"width\" value=\"" + std::to_string(width) +
+                  "\"/><integer name=\"height\" value=\"" + std::to_string(height) + "\"/></film></sensor></scene>")
             .camera.fov_x_degrees;
     };
     for (const auto& [properties, expected] : cases) {
@@ -211,7 +220,9 @@ TEST(MitsubaReader, AreaEmitterBelongsToItsShape) {
 
 TEST(MitsubaReader, VolpathIsPathWithoutMedia) {
     const SceneFolder folder;
-    EXPECT_EQ(folder.elements(R"(<integrator type="volpath"><integer name="max_depth" value="65"/></integrator>)").integrator.max_depth, 65);
+    EXPECT_EQ(folder.elements(R"(<integrator type="volpath"><integer name="max_depth" value="65"/></integrator>)")
+                  .integrator.max_depth,
+              65);
     const auto faults = folder.element_faults(
         R"(<integrator type="volpath"/><shape type="cube"><medium type="homogeneous" name="interior"/></shape>)");
     ASSERT_EQ(faults.size(), 1U);

@@ -37,7 +37,7 @@ struct LightBuffers {
     std::vector<float> texels{0.0F};
     std::vector<AliasEntry> alias{1};
     std::vector<float> density{0.0F};
-    std::vector<Texture> textures{1};
+    std::vector<::Texture> textures{1};
     std::vector<float> texture_texels{0.0F};
 };
 

@@ -77,9 +77,9 @@ inline ReferenceValue reference_rough_conductor(const Material& m, const glm::dv
     const glm::dvec3 h = glm::normalize(wi + wo);
     const double d = reference_density(m, h);
     const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
-    const double jacobian = 1.0 / (4.0 * glm::dot(wo, h));
+    // wi . h in the density of visible normals and 4 wo . h in the Jacobian leave 4.
     return {to_double(m.specular.value) * reference_fresnel_conductor(m, glm::dot(wi, h)) * (d * g / (4.0 * wi.z)),
-            d * reference_masking(m, wi, true) * glm::dot(wi, h) / wi.z * jacobian};
+            d * reference_masking(m, wi, true) / (4.0 * wi.z)};
 }
 
 inline ReferenceValue reference_rough_dielectric(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
@@ -94,11 +94,11 @@ inline ReferenceValue reference_rough_dielectric(const Material& m, const glm::d
     const double fresnel = reference_fresnel_dielectric(cos_i, m.eta.x);
     const double d = reference_density(m, h);
     const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
-    const double visible = d * reference_masking(m, wi, true) * std::abs(cos_i / wi.z);
     if (reflects) {
         return {to_double(m.specular.value) * (fresnel * d * g / (4.0 * std::abs(wi.z))),
-                fresnel * visible / (4.0 * std::abs(cos_o))};
+                fresnel * d * reference_masking(m, wi, true) / (4.0 * std::abs(wi.z))};
     }
+    const double visible = d * reference_masking(m, wi, true) * std::abs(cos_i / wi.z);
     const double sum = cos_i + eta * cos_o;
     const double jacobian = eta * eta * std::abs(cos_o) / (sum * sum);
     return {to_double(m.transmission.value) *

@@ -93,6 +93,11 @@ inline std::vector<glm::vec3> incident_directions(const Material& m) {
     return result;
 }
 
+// With all its digits.
+inline std::string to_text(const glm::vec3& v) {
+    return testing::PrintToString(v.x) + " " + testing::PrintToString(v.y) + " " + testing::PrintToString(v.z);
+}
+
 inline double mean(const glm::dvec3& v) { return (v.x + v.y + v.z) / 3.0; }
 
 // How much the reference changes when each component of the directions moves by one rounding error.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -116,11 +117,14 @@ public:
         bitangent_ = glm::cross(axis_, tangent_);
     }
 
-    // Equal rings over the whole sphere.
-    static SphereGrid whole(int rings, int sectors, const glm::dvec3& axis = {0, 0, 1}) {
+    // The whole sphere about +z. Rings narrow towards the horizon, where lobes end abruptly at grazing incidence.
+    static SphereGrid whole(int sectors) {
+        const double above[] = {1.0,  0.875, 0.75, 0.625, 0.5,  0.375, 0.25, 0.125,
+                                0.03, 0.01,  3e-3, 1e-3,  3e-4, 1e-4,  0.0};
         std::vector<double> heights;
-        for (int i = 0; i <= rings; ++i) heights.push_back(2.0 * i / rings);
-        return {axis, std::move(heights), sectors};
+        for (double z : above) heights.push_back(1.0 - z);
+        for (auto z = std::rbegin(above) + 1; z != std::rend(above); ++z) heights.push_back(1.0 + *z);
+        return {{0, 0, 1}, std::move(heights), sectors};
     }
 
     // A cap for a lobe of angular scale `width`: rings grow from a fraction of it to many times it.
@@ -182,6 +186,7 @@ inline std::vector<double> integrate_cells(const SphereGrid& grid, const BatchFu
     // Gauss-Legendre rule of four points on [0, 1].
     constexpr double nodes[4] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813, 0.93056815579702629};
     constexpr double weights[4] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307, 0.17392742256872693};
+    constexpr int min_depth = 2;  // a feature must not hide between the first points
     constexpr int max_depth = 12;
 
     struct Job {
@@ -233,7 +238,7 @@ inline std::vector<double> integrate_cells(const SphereGrid& grid, const BatchFu
         std::vector<Job> next;
         std::vector<double> next_coarse;
         for (std::size_t j = 0; j < jobs.size(); ++j) {
-            bool settled = true;
+            bool settled = depth >= min_depth;
             std::vector<double> sum(channels, 0.0);
             for (std::size_t k = 0; k < channels; ++k) {
                 for (std::size_t q = 0; q < 4; ++q) sum[k] += fine[(4 * j + q) * channels + k];

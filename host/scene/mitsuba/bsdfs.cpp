@@ -34,8 +34,10 @@ Index conductor_index(Query& query) {
         query.fault("both `material` and `eta`, `k` are given", "keep one of the two");
     const NamedConductor* named = find_conductor(material);
     if (named == nullptr) {
-        query.fault_at("material", "`" + material + "` is no conductor known here; expected one of " + quoted_list(conductor_names()),
-                       suggestion(material, conductor_names()));
+        query.fault_at(
+            "material",
+            "`" + material + "` is no conductor known here; expected one of " + quoted_list(conductor_names()),
+            suggestion(material, conductor_names()));
         return {};
     }
     return {Rgb(named->eta[0], named->eta[1], named->eta[2]), Rgb(named->k[0], named->k[1], named->k[2])};
@@ -53,12 +55,14 @@ struct Roughness {
 
 Roughness roughness(Query& query) {
     Roughness result;
-    result.distribution = query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
+    result.distribution =
+        query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
     query.boolean("sample_visible", true);
     const bool two = query.has("alpha_u") || query.has("alpha_v");
     if (two && !(query.has("alpha_u") && query.has("alpha_v")))
         query.fault("only one of `alpha_u` and `alpha_v` is given", "give both, or `alpha` alone");
-    if (two && query.has("alpha")) query.fault("`alpha` is given along with `alpha_u` and `alpha_v`", "keep one of the two forms");
+    if (two && query.has("alpha"))
+        query.fault("`alpha` is given along with `alpha_u` and `alpha_v`", "keep one of the two forms");
     // Smoother surfaces are clamped, as the microfacet models of Mitsuba are.
     const auto alpha_of = [&](const std::string& name) {
         Parameter alpha = query.scalar_parameter(name, 0.1, not_negative);
@@ -73,11 +77,14 @@ Roughness roughness(Query& query) {
     return result;
 }
 
-Bsdf read_diffuse(Query& query) { return make(query, Diffuse{reflectance(query, "reflectance", 0.5)}, Sides::front); }
+Bsdf read_diffuse(Query& query) {
+    return make(query, Diffuse{reflectance(query, "reflectance", 0.5)}, Sides::front);
+}
 
 Bsdf read_conductor(Query& query) {
     const Index index = conductor_index(query);
-    return make(query, Conductor{index.eta, index.k, reflectance(query, "specular_reflectance", 1.0)}, Sides::front);
+    return make(query, Conductor{index.eta, index.k, reflectance(query, "specular_reflectance", 1.0)},
+                Sides::front);
 }
 
 Bsdf read_rough_conductor(Query& query) {
@@ -98,7 +105,8 @@ Bsdf read_dielectric(Query& query) {
 Bsdf read_thin_dielectric(Query& query) {
     const float eta = relative_index(query, "bk7");
     const Parameter reflected = reflectance(query, "specular_reflectance", 1.0);
-    return make(query, ThinDielectric{eta, reflected, reflectance(query, "specular_transmittance", 1.0)}, Sides::both);
+    return make(query, ThinDielectric{eta, reflected, reflectance(query, "specular_transmittance", 1.0)},
+                Sides::both);
 }
 
 Bsdf read_rough_dielectric(Query& query) {
@@ -108,7 +116,8 @@ Bsdf read_rough_dielectric(Query& query) {
     const Parameter reflected = reflectance(query, "specular_reflectance", 1.0);
     const Parameter transmitted = reflectance(query, "specular_transmittance", 1.0);
     const Roughness rough = roughness(query);
-    return make(query, RoughDielectric{eta, reflected, transmitted, rough.alpha_u, rough.alpha_v, rough.distribution},
+    return make(query,
+                RoughDielectric{eta, reflected, transmitted, rough.alpha_u, rough.alpha_v, rough.distribution},
                 Sides::both);
 }
 
@@ -130,7 +139,8 @@ Bsdf read_phong(Query& query) {
     };
     const Parameter diffuse = either("diffuse_reflectance", "diffuseReflectance", 0.5);
     const Parameter specular = either("specular_reflectance", "specularReflectance", 0.2);
-    return make(query, Phong{diffuse, specular, query.scalar_parameter("exponent", 30.0, not_negative)}, Sides::front);
+    return make(query, Phong{diffuse, specular, query.scalar_parameter("exponent", 30.0, not_negative)},
+                Sides::front);
 }
 
 Bsdf read_twosided(Query& query) {
@@ -138,7 +148,9 @@ Bsdf read_twosided(Query& query) {
     const std::vector<const Child*> nested = query.children("bsdf");
     if (query.has_unresolved_children()) return {};
     if (nested.empty() || nested.size() > 2) {
-        query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one for both sides, or one for each", "");
+        query.fault("holds " + std::to_string(nested.size()) +
+                        " nested BSDFs; expected one for both sides, or one for each",
+                    "");
         return {};
     }
     const Bsdf front = read_bsdf(query.context(), *nested.front()->object);
@@ -182,7 +194,8 @@ Bsdf read_bsdf(Context& context, const Object& object) {
 Bsdf default_bsdf(Context& context, bool emitter) {
     auto& material = emitter ? context.black_material : context.default_material;
     if (material == nullptr)
-        material = std::make_shared<const Material>(Material{Diffuse{Parameter{Rgb(emitter ? 0.0F : 0.5F), nullptr}}, ""});
+        material =
+            std::make_shared<const Material>(Material{Diffuse{Parameter{Rgb(emitter ? 0.0F : 0.5F), nullptr}}, ""});
     return {material, nullptr, false};
 }
 

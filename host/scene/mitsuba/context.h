@@ -20,7 +20,8 @@ struct Bsdf {
 };
 
 struct Context {
-    Context(const Document& source, Scene& target, Faults& found) : document(source), scene(target), faults(found) {}
+    Context(const Document& source, Scene& target, Faults& found)
+        : document(source), scene(target), faults(found) {}
 
     const Document& document;
     Scene& scene;

@@ -2,7 +2,6 @@
 #include "scene/mitsuba/document.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <set>
 
@@ -10,6 +9,7 @@
 
 #include "scene/file.h"
 #include "scene/mitsuba/elements.h"
+#include "scene/mitsuba/substitution.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -19,11 +19,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t max_include_depth = 15;
-
-struct Definition {
-    std::string value;
-    bool used = false;
-};
 
 // One file while it is being read.
 struct SourceFile {
@@ -38,7 +33,8 @@ struct SourceFile {
     Place place(std::ptrdiff_t offset) const {
         const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0));
         const auto line = std::upper_bound(line_starts.begin(), line_starts.end(), at) - line_starts.begin();
-        return {name, static_cast<int>(line), static_cast<int>(at - line_starts[static_cast<std::size_t>(line - 1)]) + 1};
+        return {name, static_cast<int>(line),
+                static_cast<int>(at - line_starts[static_cast<std::size_t>(line - 1)]) + 1};
     }
 
     // The offset of a node is that of its name, one behind the bracket.
@@ -48,18 +44,16 @@ struct SourceFile {
 class DocumentReader {
 public:
     DocumentReader(Document& document, const Definitions& definitions, Faults& faults)
-        : document_(document), faults_(faults) {
-        for (const auto& [name, value] : definitions) definitions_[name] = {value, false};
-    }
+        : document_(document), faults_(faults), substitution_(definitions) {}
 
     void read(const std::string& path) {
         document_.search_folders.push_back(fs::path(path).parent_path().string());
         read_file_into(path, nullptr, Place{});
         resolve_references();
-        for (const auto& [name, definition] : definitions_)
-            if (!definition.used)
-                faults_.add(Place{&document_.files.front(), 0, 0}, "-D " + name, "the scene does not use this definition",
-                            "remove it, or write $" + name + " where it should apply");
+        for (const std::string& name : substitution_.unused())
+            faults_.add(Place{&document_.files.front(), 0, 0}, "-D " + name,
+                        "the scene does not use this definition",
+                        "remove it, or write $" + name + " where it should apply");
     }
 
 private:
@@ -70,7 +64,8 @@ private:
             return faults_.add(from, "<include>", "`" + path + "` includes itself, directly or through other files",
                                "remove one include of the loop");
         if (open_files_.size() >= max_include_depth)
-            return faults_.add(from, "<include>", "includes are nested more than " + std::to_string(max_include_depth) + " deep",
+            return faults_.add(from, "<include>",
+                               "includes are nested more than " + std::to_string(max_include_depth) + " deep",
                                "flatten the files");
         document_.files.push_back(path);
         const std::string& name = document_.files.back();
@@ -79,8 +74,8 @@ private:
         pugi::xml_document xml;
         const pugi::xml_parse_result result = xml.load_buffer(text.data(), text.size());
         if (!result)
-            return faults_.add(file.place(result.offset), "", std::string("not well-formed XML: ") + result.description(),
-                               "correct the XML");
+            return faults_.add(file.place(result.offset), "",
+                               std::string("not well-formed XML: ") + result.description(), "correct the XML");
         open_files_.push_back(canonical);
         read_root(xml.document_element(), file, parent);
         open_files_.pop_back();
@@ -102,7 +97,8 @@ private:
         } else if (parent != nullptr && is_object_tag(element.tag)) {
             read_object(node, element, file, *parent);
         } else {
-            faults_.add(element.place, "<" + element.tag + ">", "a scene file starts with <scene version=\"3.0.0\">", "");
+            faults_.add(element.place, "<" + element.tag + ">",
+                        "a scene file starts with <scene version=\"3.0.0\">", "");
         }
     }
 
@@ -124,11 +120,13 @@ private:
             begin = end + 1;
         }
         if (!numbers || parts.size() != 3) {
-            faults_.add(element.place, label, "cannot read the version `" + *version + "`; expected three numbers such as 3.0.0", "");
+            faults_.add(element.place, label,
+                        "cannot read the version `" + *version + "`; expected three numbers such as 3.0.0", "");
             return false;
         }
         if (parts[0] < 2) {
-            faults_.add(element.place, label, "files of version " + *version + " are not supported yet; expected 2.x.y or 3.x.y",
+            faults_.add(element.place, label,
+                        "files of version " + *version + " are not supported yet; expected 2.x.y or 3.x.y",
                         "convert the scene to the format of Mitsuba 3");
             return false;
         }
@@ -137,48 +135,15 @@ private:
 
     Element make_element(const pugi::xml_node& node, const SourceFile& file) {
         Element element{node.name(), {}, file.place(node), false};
+        const auto undefined = [&](const std::string& name) {
+            faults_.add(element.place, "<" + element.tag + ">", "$" + name + " is not defined",
+                        "define it before its use with <default name=\"" + name + "\" value=\"...\"/> or -D " +
+                            name + "=...");
+            element.broken = true;
+        };
         for (const pugi::xml_attribute& attribute : node.attributes())
-            element.attributes.emplace_back(attribute.name(), substitute(attribute.value(), element));
+            element.attributes.emplace_back(attribute.name(), substitution_.apply(attribute.value(), undefined));
         return element;
-    }
-
-    // Longest name first, so that $depth does not cut into $depth_max; \$ stands for the dollar sign.
-    std::string substitute(const std::string& text, Element& element) {
-        std::string result;
-        for (std::size_t i = 0; i < text.size();) {
-            if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '$') {
-                result += '$';
-                i += 2;
-            } else if (text[i] == '$') {
-                i += 1 + replace_name(std::string_view(text).substr(i + 1), result, element);
-            } else {
-                result += text[i++];
-            }
-        }
-        return result;
-    }
-
-    // Returns how many characters the name takes.
-    std::size_t replace_name(std::string_view rest, std::string& result, Element& element) {
-        Definition* best = nullptr;
-        std::size_t length = 0;
-        for (auto& [name, definition] : definitions_)
-            if (rest.starts_with(name) && name.size() > length) {
-                best = &definition;
-                length = name.size();
-            }
-        if (best != nullptr) {
-            best->used = true;
-            result += best->value;
-            return length;
-        }
-        const auto is_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-        const auto end = std::find_if_not(rest.begin(), rest.end(), is_name);
-        const std::string name(rest.begin(), end);
-        faults_.add(element.place, "<" + element.tag + ">", "$" + name + " is not defined",
-                    "define it before its use with <default name=\"" + name + "\" value=\"...\"/> or -D " + name + "=...");
-        element.broken = true;
-        return name.size();
     }
 
     void read_children(const pugi::xml_node& node, const SourceFile& file, Object& parent) {
@@ -192,7 +157,8 @@ private:
         // <spectrum type="..."> is an object, as a texture is.
         const bool spectrum_object = tag == "spectrum" && element.attribute("type") != nullptr;
         if (is_object_tag(tag) || spectrum_object) {
-            if (check_attributes(element, {"type"}, {"id", "name"}, faults_)) read_object(node, element, file, parent);
+            if (check_attributes(element, {"type"}, {"id", "name"}, faults_))
+                read_object(node, element, file, parent);
             return;
         }
         if (is_property_tag(tag)) return read_property(node, element, file, parent);
@@ -204,7 +170,8 @@ private:
         else if (is_transform_operation(tag))
             faults_.add(element.place, element.label(), "only a <transform> can hold this operation", "");
         else
-            faults_.add(element.place, "<" + tag + ">", "unknown element; expected one of " + quoted_list(known_tags()),
+            faults_.add(element.place, "<" + tag + ">",
+                        "unknown element; expected one of " + quoted_list(known_tags()),
                         suggestion(tag, known_tags()));
         refuse_children(node, element, file);
     }
@@ -212,7 +179,8 @@ private:
     void refuse_children(const pugi::xml_node& node, const Element& element, const SourceFile& file) {
         for (const pugi::xml_node& child : node.children())
             if (child.type() == pugi::node_element)
-                faults_.add(file.place(child), element.label(), std::string("<") + child.name() + "> cannot be nested here", "");
+                faults_.add(file.place(child), element.label(),
+                            std::string("<") + child.name() + "> cannot be nested here", "");
     }
 
     void read_object(const pugi::xml_node& node, const Element& element, const SourceFile& file, Object& parent) {
@@ -224,8 +192,8 @@ private:
         object.broken = element.broken;
         if (!object.id.empty() && !ids_.emplace(object.id, &object).second)
             faults_.add(object.place, object.label(),
-                        "the id `" + object.id + "` is taken by line " + std::to_string(ids_[object.id]->place.line) + " of " +
-                            *ids_[object.id]->place.file,
+                        "the id `" + object.id + "` is taken by line " +
+                            std::to_string(ids_[object.id]->place.line) + " of " + *ids_[object.id]->place.file,
                         "give every object an id of its own");
         parent.children.push_back({element.text("name"), &object, "", object.place});
         read_children(node, file, object);
@@ -242,8 +210,8 @@ private:
         const std::string name = element.text("name");
         const auto same = [&](const Property& property) { return property.name == name; };
         if (std::any_of(parent.properties.begin(), parent.properties.end(), same))
-            return faults_.add(element.place, element.label(), "the property is given more than once in " + parent.label(),
-                               "keep one of them");
+            return faults_.add(element.place, element.label(),
+                               "the property is given more than once in " + parent.label(), "keep one of them");
         parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
     }
 
@@ -256,14 +224,15 @@ private:
         if (!check_attributes(element, {"name", "value"}, {}, faults_)) return;
         if (element.text("name").empty())
             return faults_.add(element.place, element.label(), "the name is empty", "name the parameter");
-        definitions_.try_emplace(element.text("name"), Definition{element.text("value"), true});
+        substitution_.set_default(element.text("name"), element.text("value"));
     }
 
     void read_alias(const Element& element) {
         if (!check_attributes(element, {"id", "as"}, {}, faults_)) return;
         const auto source = ids_.find(element.text("id"));
         if (source == ids_.end())
-            return faults_.add(element.place, "<alias>", "no object before this line has the id `" + element.text("id") + "`",
+            return faults_.add(element.place, "<alias>",
+                               "no object before this line has the id `" + element.text("id") + "`",
                                "place the alias behind the object");
         if (!ids_.emplace(element.text("as"), source->second).second)
             faults_.add(element.place, "<alias>", "the id `" + element.text("as") + "` is taken", "choose another");
@@ -272,10 +241,12 @@ private:
     void read_path(const Element& element, const Object& parent) {
         if (!check_attributes(element, {"value"}, {}, faults_)) return;
         if (&parent != document_.root)
-            return faults_.add(element.place, "<path>", "only the scene itself can hold a search path", "move it up");
+            return faults_.add(element.place, "<path>", "only the scene itself can hold a search path",
+                               "move it up");
         const std::string folder = document_.find_file(element.text("value"), element.place);
         if (folder.empty())
-            return faults_.add(element.place, "<path>", "the folder `" + element.text("value") + "` does not exist", "");
+            return faults_.add(element.place, "<path>", "the folder `" + element.text("value") + "` does not exist",
+                               "");
         document_.search_folders.insert(document_.search_folders.begin(), folder);
     }
 
@@ -283,10 +254,12 @@ private:
         if (!check_attributes(element, {"filename"}, {"name"}, faults_) || element.broken) return;
         // The folder of the including file comes before the search path.
         const fs::path beside = fs::path(*element.place.file).parent_path() / element.text("filename");
-        const std::string path =
-            fs::is_regular_file(beside) ? beside.string() : document_.find_file(element.text("filename"), element.place);
+        const std::string path = fs::is_regular_file(beside)
+                                     ? beside.string()
+                                     : document_.find_file(element.text("filename"), element.place);
         if (path.empty())
-            return faults_.add(element.place, "<include>", "the file `" + element.text("filename") + "` does not exist",
+            return faults_.add(element.place, "<include>",
+                               "the file `" + element.text("filename") + "` does not exist",
                                "check the name, or add its folder with <path>");
         const std::size_t first = parent.children.size();
         read_file_into(path, &parent, element.place);
@@ -317,7 +290,8 @@ private:
         for (Child& child : object.children) {
             if (child.object == nullptr || visited.count(child.object) != 0) continue;
             if (std::find(path.begin(), path.end(), child.object) != path.end()) {
-                faults_.add(child.place, "<ref>", "`" + child.reference + "` refers back to the object that holds it", "break the loop");
+                faults_.add(child.place, "<ref>",
+                            "`" + child.reference + "` refers back to the object that holds it", "break the loop");
                 child.object = nullptr;
             } else {
                 refuse_cycles(*child.object, visited, path);
@@ -329,31 +303,12 @@ private:
 
     Document& document_;
     Faults& faults_;
-    std::map<std::string, Definition> definitions_;
+    Substitution substitution_;
     std::map<std::string, Object*> ids_;
     std::vector<std::string> open_files_;
 };
 
 }  // namespace
-
-void Faults::add(const Place& place, std::string element, std::string message, std::string hint) {
-    add({place.file == nullptr ? "" : *place.file, place.line, place.column, std::move(element), std::move(message),
-         std::move(hint)});
-}
-
-void Faults::add(const InputError& error, const Place& place, const std::string& element) {
-    const std::string used = "used at " + *place.file + ":" + std::to_string(place.line) + " by " + element;
-    for (Fault fault : error.faults()) {
-        fault.hint += (fault.hint.empty() ? "" : "; ") + used;
-        add(std::move(fault));
-    }
-}
-
-void Faults::add(Fault fault) {
-    const std::string text = fault.text();
-    if (std::any_of(list_.begin(), list_.end(), [&](const Fault& other) { return other.text() == text; })) return;
-    list_.push_back(std::move(fault));
-}
 
 std::string Object::label() const {
     return tag + (tag == type ? "" : "[" + type + "]") + (id.empty() ? "" : " \"" + id + "\"");

@@ -12,29 +12,10 @@
 
 #include <glm/glm.hpp>
 
-#include "scene/fault.h"
+#include "scene/mitsuba/faults.h"
 #include "scene/mitsuba_reader.h"
 
 namespace wavelobe::mitsuba {
-
-struct Place {
-    const std::string* file = nullptr;  // owned by the Document
-    int line = 0;
-    int column = 0;
-};
-
-// Faults found so far, each once; reading goes on after a fault so that one run shows all of them.
-class Faults {
-public:
-    void add(const Place& place, std::string element, std::string message, std::string hint = "");
-    void add(const InputError& error, const Place& place, const std::string& element);
-    void add(Fault fault);
-    std::vector<Fault>& list() { return list_; }
-    bool empty() const { return list_.empty(); }
-
-private:
-    std::vector<Fault> list_;
-};
 
 struct Colour {
     glm::dvec3 rgb{0.0};

@@ -14,9 +14,9 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const Names property_tags{"float", "integer", "boolean", "string",   "point",
-                          "vector", "rgb",    "spectrum", "transform"};
-const Names object_tags{"scene",   "bsdf",   "shape",   "emitter", "sensor", "integrator", "film",
+const Names property_tags{"float",  "integer", "boolean",  "string",   "point",
+                          "vector", "rgb",     "spectrum", "transform"};
+const Names object_tags{"scene",   "bsdf",    "shape",   "emitter", "sensor", "integrator", "film",
                         "sampler", "rfilter", "texture", "medium",  "phase",  "volume"};
 const Names operation_tags{"translate", "rotate", "scale", "lookat", "matrix"};
 const Names other_tags{"default", "ref", "include", "alias", "path"};
@@ -31,16 +31,19 @@ Value refuse(const Element& element, Faults& faults, const std::string& message,
 }
 
 Value refuse_value(const Element& element, Faults& faults, const std::string& expected) {
-    return refuse(element, faults, "cannot read the value `" + element.text("value") + "`; expected " + expected, "");
+    return refuse(element, faults, "cannot read the value `" + element.text("value") + "`; expected " + expected,
+                  "");
 }
 
 // x, y and z, or `value` for all of them; a component that is left out takes `missing`.
 std::optional<glm::dvec3> parse_xyz(const Element& element, double missing, Faults& faults) {
     constexpr std::array<const char*, 3> axes{"x", "y", "z"};
     if (const std::string* value = element.attribute("value")) {
-        const bool mixed = std::any_of(axes.begin(), axes.end(), [&](const char* axis) { return element.attribute(axis); });
+        const bool mixed =
+            std::any_of(axes.begin(), axes.end(), [&](const char* axis) { return element.attribute(axis); });
         if (mixed) {
-            refuse(element, faults, "`value` cannot be combined with `x`, `y` and `z`", "keep one of the two forms");
+            refuse(element, faults, "`value` cannot be combined with `x`, `y` and `z`",
+                   "keep one of the two forms");
             return std::nullopt;
         }
         const auto triple = parse_triple(*value);
@@ -54,7 +57,8 @@ std::optional<glm::dvec3> parse_xyz(const Element& element, double missing, Faul
         const auto number = parse_real(*text);
         if (!number) {
             refuse(element, faults,
-                   "cannot read `" + *text + "` for `" + axes[static_cast<std::size_t>(i)] + "`; expected a finite number",
+                   "cannot read `" + *text + "` for `" + axes[static_cast<std::size_t>(i)] +
+                       "`; expected a finite number",
                    "");
             return std::nullopt;
         }
@@ -73,7 +77,8 @@ std::optional<glm::dmat4> parse_rotate(const Element& element, Faults& faults) {
     }
     const auto angle = parse_real(element.text("angle"));
     if (!angle) {
-        refuse(element, faults, "cannot read the angle `" + element.text("angle") + "`; expected degrees as a finite number", "");
+        refuse(element, faults,
+               "cannot read the angle `" + element.text("angle") + "`; expected degrees as a finite number", "");
         return std::nullopt;
     }
     return rotation(*axis, *angle);
@@ -88,7 +93,8 @@ std::optional<glm::dmat4> parse_look_at(const Element& element, Faults& faults) 
         if (i == 2 && text.empty()) continue;
         const auto point = split(text).size() == 3 ? parse_triple(text) : std::nullopt;
         if (!point) {
-            refuse(element, faults, "cannot read `" + text + "` for `" + names[i] + "`; expected three finite numbers", "");
+            refuse(element, faults,
+                   "cannot read `" + text + "` for `" + names[i] + "`; expected three finite numbers", "");
             return std::nullopt;
         }
         points[i] = *point;
@@ -114,7 +120,8 @@ std::optional<glm::dmat4> parse_matrix(const Element& element, Faults& faults) {
             const std::string& token = tokens[static_cast<std::size_t>(row * size + column)];
             const auto number = parse_real(token);
             if (!number) {
-                refuse(element, faults, "cannot read the matrix value `" + token + "`; expected a finite number", "");
+                refuse(element, faults, "cannot read the matrix value `" + token + "`; expected a finite number",
+                       "");
                 return std::nullopt;
             }
             matrix[column][row] = *number;
@@ -212,7 +219,8 @@ bool check_attributes(const Element& element, const Names& required, const Names
     for (const auto& [name, value] : element.attributes) {
         if (contains(allowed, name)) continue;
         faults.add(element.place, element.label(),
-                   "unexpected attribute `" + name + "`; expected only " + quoted_list(allowed), suggestion(name, allowed));
+                   "unexpected attribute `" + name + "`; expected only " + quoted_list(allowed),
+                   suggestion(name, allowed));
         fine = false;
     }
     for (const std::string& name : required) {

@@ -59,7 +59,8 @@ std::optional<Emitter> read_spot(Query& query) {
     spot.intensity = emission(query, "intensity");
     const double cutoff = query.real("cutoff_angle", 20.0, Range{0.0, 180.0, true});
     const double beam = query.real("beam_width", cutoff * 0.75, Range{0.0, 180.0, false});
-    if (beam > cutoff) query.fault_at("beam_width", "`beam_width` is above `cutoff_angle`", "expected a smaller angle");
+    if (beam > cutoff)
+        query.fault_at("beam_width", "`beam_width` is above `cutoff_angle`", "expected a smaller angle");
     spot.cutoff_degrees = static_cast<float>(cutoff);
     spot.beam_width_degrees = static_cast<float>(beam);
     if (query.has("texture")) {
@@ -75,7 +76,8 @@ std::optional<Emitter> read_directional(Query& query) {
         query.fault("both `direction` and `to_world` are given", "keep one of the two");
     const glm::dvec3 along_z(query.transform("to_world")[2]);
     const glm::dvec3 direction = query.triple("direction", along_z);
-    if (direction == glm::dvec3(0.0)) query.fault_at("direction", "the direction is zero", "give the way the light travels");
+    if (direction == glm::dvec3(0.0))
+        query.fault_at("direction", "the direction is zero", "give the way the light travels");
     return DirectionalEmitter{glm::vec3(glm::normalize(direction)), emission(query, "irradiance")};
 }
 
@@ -98,7 +100,8 @@ void read_emitter(Context& context, const Object& object) {
     const auto* plugin = find_plugin(context, object, plugins);
     if (plugin == nullptr) return;
     Query query(context, object);
-    if (plugin->read == nullptr) return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
+    if (plugin->read == nullptr)
+        return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
     std::optional<Emitter> emitter = plugin->read(query);
     accept_sampling_weight(query);
     query.finish();

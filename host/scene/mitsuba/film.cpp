@@ -63,7 +63,8 @@ Film read_hdr_film(Query& query) {
     film.crop_x = size("crop_offset_x", 0, 0);
     film.crop_y = size("crop_offset_y", 0, 0);
     if (film.crop_x + film.crop_width > film.width || film.crop_y + film.crop_height > film.height)
-        query.fault("the crop window reaches beyond the film", "let offset plus size stay within `width` and `height`");
+        query.fault("the crop window reaches beyond the film",
+                    "let offset plus size stay within `width` and `height`");
     accept_output_formats(query);
     const std::vector<const Child*> filters = query.children("rfilter");
     if (filters.size() > 1) query.fault("holds more than one reconstruction filter", "keep one of them");

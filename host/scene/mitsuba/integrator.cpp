@@ -22,7 +22,8 @@ Integrator read_path(Query& query) {
 Integrator read_direct(Query& query) {
     const bool separate = query.has("emitter_samples") || query.has("bsdf_samples");
     if (query.has("shading_samples") && separate)
-        query.fault("`shading_samples` is given along with `emitter_samples` or `bsdf_samples`", "keep one of the two forms");
+        query.fault("`shading_samples` is given along with `emitter_samples` or `bsdf_samples`",
+                    "keep one of the two forms");
     const std::int64_t shading = query.integer("shading_samples", 1, 1, int_max);
     const std::int64_t emitter = query.integer("emitter_samples", shading, 0, int_max);
     const std::int64_t bsdf = query.integer("bsdf_samples", shading, 0, int_max);

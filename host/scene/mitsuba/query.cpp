@@ -62,15 +62,17 @@ void Query::wrong_type(const Property& property, const std::string& expected) {
 double Query::in_range(const Property& property, double number, double otherwise, const Range& range) {
     const bool inside = (range.open_low ? number > range.low : number >= range.low) && number <= range.high;
     if (inside) return number;
-    context_.faults.add(property.place, object_.label(),
-                        "`" + property.name + "` is " + number_text(number) + "; expected a number " + range_text(range), "");
+    context_.faults.add(
+        property.place, object_.label(),
+        "`" + property.name + "` is " + number_text(number) + "; expected a number " + range_text(range), "");
     return otherwise;
 }
 
 double Query::real(const std::string& name, double otherwise, Range range) {
     const Property* property = find(name);
     if (property == nullptr) return otherwise;
-    if (const auto* number = std::get_if<double>(&property->value)) return in_range(*property, *number, otherwise, range);
+    if (const auto* number = std::get_if<double>(&property->value))
+        return in_range(*property, *number, otherwise, range);
     if (const auto* number = std::get_if<std::int64_t>(&property->value))
         return in_range(*property, static_cast<double>(*number), otherwise, range);
     wrong_type(*property, "<float>");
@@ -87,7 +89,8 @@ std::int64_t Query::integer(const std::string& name, std::int64_t otherwise, std
     }
     if (*number >= low && *number <= high) return *number;
     context_.faults.add(property->place, object_.label(),
-                        fmt::format("`{}` is {}; expected a whole number from {} to {}", name, *number, low, high), "");
+                        fmt::format("`{}` is {}; expected a whole number from {} to {}", name, *number, low, high),
+                        "");
     return otherwise;
 }
 
@@ -141,19 +144,22 @@ std::size_t Query::choice(const std::string& name, const std::vector<std::string
     const auto found = std::find(choices.begin(), choices.end(), lower_case(*text));
     if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
     context_.faults.add(property->place, object_.label(),
-                        "`" + name + "` is `" + *text + "`; expected one of " + quoted_list(choices), suggestion(*text, choices));
+                        "`" + name + "` is `" + *text + "`; expected one of " + quoted_list(choices),
+                        suggestion(*text, choices));
     return otherwise;
 }
 
 std::optional<Rgb> Query::colour_value(const Property& property, ColourUse use) {
     glm::dvec3 rgb(0.0);
     if (const auto* number = std::get_if<double>(&property.value)) rgb = glm::dvec3(*number);
-    else if (const auto* whole = std::get_if<std::int64_t>(&property.value)) rgb = glm::dvec3(static_cast<double>(*whole));
+    else if (const auto* whole = std::get_if<std::int64_t>(&property.value))
+        rgb = glm::dvec3(static_cast<double>(*whole));
     else if (const auto* colour = std::get_if<Colour>(&property.value)) rgb = colour->rgb;
     else if (const auto* spectrum = std::get_if<UniformSpectrum>(&property.value))
-        rgb = use != ColourUse::emission ? glm::dvec3(spectrum->value)
-                                         : spectrum->value * glm::dvec3(uniform_spectrum_rgb[0], uniform_spectrum_rgb[1],
-                                                                        uniform_spectrum_rgb[2]);
+        rgb = use != ColourUse::emission
+                  ? glm::dvec3(spectrum->value)
+                  : spectrum->value *
+                        glm::dvec3(uniform_spectrum_rgb[0], uniform_spectrum_rgb[1], uniform_spectrum_rgb[2]);
     else {
         wrong_type(property, "<float>, <rgb> or <spectrum> with one value");
         return std::nullopt;
@@ -162,10 +168,11 @@ std::optional<Rgb> Query::colour_value(const Property& property, ColourUse use) 
     const bool above_one = rgb.r > 1.0 || rgb.g > 1.0 || rgb.b > 1.0;
     const bool bounded = use == ColourUse::reflectance && std::holds_alternative<Colour>(property.value);
     if (negative || (bounded && above_one)) {
-        context_.faults.add(property.place, object_.label(),
-                            fmt::format("`{}` is {:.6g}, {:.6g}, {:.6g}; expected components {}", property.name, rgb.r, rgb.g,
-                                        rgb.b, use == ColourUse::reflectance ? "from 0 to 1" : "that are not negative"),
-                            "");
+        context_.faults.add(
+            property.place, object_.label(),
+            fmt::format("`{}` is {:.6g}, {:.6g}, {:.6g}; expected components {}", property.name, rgb.r, rgb.g,
+                        rgb.b, use == ColourUse::reflectance ? "from 0 to 1" : "that are not negative"),
+            "");
         return std::nullopt;
     }
     return Rgb(rgb);
@@ -193,7 +200,8 @@ Parameter Query::scalar_parameter(const std::string& name, double otherwise, Ran
     if (const Property* property = find(name)) {
         double number = otherwise;
         if (const auto rgb = colour_value(*property, ColourUse::unbounded))
-            number = (static_cast<double>(rgb->r) + static_cast<double>(rgb->g) + static_cast<double>(rgb->b)) / 3.0;
+            number =
+                (static_cast<double>(rgb->r) + static_cast<double>(rgb->g) + static_cast<double>(rgb->b)) / 3.0;
         result.value = Rgb(static_cast<float>(in_range(*property, number, otherwise, range)));
     } else if (const Child* child = find_child(name); child != nullptr && child->object != nullptr) {
         result.texture = read_texture(context_, *child->object, TextureUse::scalar);
@@ -205,23 +213,26 @@ double Query::refractive_index(const std::string& name, const std::string& other
     const Property* property = find(name);
     const double fallback = find_dielectric(otherwise).value_or(1.0);
     if (property == nullptr) return fallback;
-    if (const auto* number = std::get_if<double>(&property->value)) return in_range(*property, *number, fallback, positive);
+    if (const auto* number = std::get_if<double>(&property->value))
+        return in_range(*property, *number, fallback, positive);
     const auto* text = std::get_if<std::string>(&property->value);
     if (text == nullptr) {
         wrong_type(*property, "<float>, or <string> with the name of a dielectric");
         return fallback;
     }
     if (const auto index = find_dielectric(lower_case(*text))) return *index;
-    context_.faults.add(property->place, object_.label(),
-                        "`" + *text + "` is no dielectric known here; expected one of " + quoted_list(dielectric_names()),
-                        suggestion(*text, dielectric_names()));
+    context_.faults.add(
+        property->place, object_.label(),
+        "`" + *text + "` is no dielectric known here; expected one of " + quoted_list(dielectric_names()),
+        suggestion(*text, dielectric_names()));
     return fallback;
 }
 
 std::string Query::file(const std::string& name) {
     const Property* property = find(name);
     if (property == nullptr) {
-        fault("the property `" + name + "` is missing", "name the file with <string name=\"" + name + "\" value=\"...\"/>");
+        fault("the property `" + name + "` is missing",
+              "name the file with <string name=\"" + name + "\" value=\"...\"/>");
         return {};
     }
     const auto* text = std::get_if<std::string>(&property->value);
@@ -247,10 +258,13 @@ std::vector<const Child*> Query::children(const std::string& tag) {
 }
 
 bool Query::has_unresolved_children() const {
-    return std::any_of(object_.children.begin(), object_.children.end(), [](const Child& child) { return child.object == nullptr; });
+    return std::any_of(object_.children.begin(), object_.children.end(),
+                       [](const Child& child) { return child.object == nullptr; });
 }
 
-void Query::accept(const std::vector<std::string>& names) { asked_.insert(asked_.end(), names.begin(), names.end()); }
+void Query::accept(const std::vector<std::string>& names) {
+    asked_.insert(asked_.end(), names.begin(), names.end());
+}
 
 void Query::fault(const std::string& message, const std::string& hint) {
     context_.faults.add(object_.place, object_.label(), message, hint);
@@ -266,30 +280,34 @@ void Query::fault_at(const std::string& name, const std::string& message, const 
 }
 
 void Query::warn(const std::string& message) {
-    context_.scene.warnings.push_back(Fault{*object_.place.file, object_.place.line, object_.place.column,
-                                            object_.label(), message, ""}.text());
+    context_.scene.warnings.push_back(
+        Fault{*object_.place.file, object_.place.line, object_.place.column, object_.label(), message, ""}.text());
 }
 
 void Query::finish() {
     std::sort(asked_.begin(), asked_.end());
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
-    const std::string expected = asked_.empty() ? "; it takes no properties" : "; expected only " + quoted_list(asked_);
+    const std::string expected =
+        asked_.empty() ? "; it takes no properties" : "; expected only " + quoted_list(asked_);
     for (const Property& property : object_.properties)
         if (!std::binary_search(asked_.begin(), asked_.end(), property.name))
-            context_.faults.add(property.place, object_.label(), "unknown property `" + property.name + "`" + expected,
+            context_.faults.add(property.place, object_.label(),
+                                "unknown property `" + property.name + "`" + expected,
                                 suggestion(property.name, asked_));
     for (const Child& child : object_.children) {
         if (child.object == nullptr || std::find(taken_.begin(), taken_.end(), &child) != taken_.end()) continue;
         const std::string name = child.name.empty() ? "" : " named `" + child.name + "`";
-        context_.faults.add(child.place, object_.label(), "cannot hold a nested " + child.object->label() + name + expected,
+        context_.faults.add(child.place, object_.label(),
+                            "cannot hold a nested " + child.object->label() + name + expected,
                             child.name.empty() ? "" : suggestion(child.name, asked_));
     }
 }
 
 void refuse_type(Context& context, const Object& object, const std::vector<std::string>& supported) {
-    context.faults.add(object.place, object.label(),
-                       "this type of " + object.tag + " is not supported; expected one of " + quoted_list(supported),
-                       suggestion(object.type, supported));
+    context.faults.add(
+        object.place, object.label(),
+        "this type of " + object.tag + " is not supported; expected one of " + quoted_list(supported),
+        suggestion(object.type, supported));
 }
 
 }  // namespace wavelobe::mitsuba

@@ -20,7 +20,10 @@ const std::array<SamplerPlugin, 5> sampler_plugins{{
     {"independent", [] { return std::vector<std::string>{}; }},
     {"ldsampler", [] { return std::vector<std::string>{}; }},
     {"multijitter", [] { return std::vector<std::string>{"jitter"}; }},
-    {"orthogonal", [] { return std::vector<std::string>{"jitter", "strength"}; }},
+    {"orthogonal",
+     [] {
+         return std::vector<std::string>{"jitter", "strength"};
+     }},
     {"stratified", [] { return std::vector<std::string>{"jitter"}; }},
 }};
 
@@ -35,7 +38,8 @@ Sampling read_sampler(Context& context, const Object& object) {
     Query query(context, object);
     Sampling sampling;
     sampling.sample_count = static_cast<int>(query.integer("sample_count", 4, 1, std::numeric_limits<int>::max()));
-    sampling.seed = static_cast<std::uint32_t>(query.integer("seed", 0, 0, std::numeric_limits<std::uint32_t>::max()));
+    sampling.seed =
+        static_cast<std::uint32_t>(query.integer("seed", 0, 0, std::numeric_limits<std::uint32_t>::max()));
     query.accept(plugin->accepted());
     query.finish();
     return sampling;
@@ -50,7 +54,8 @@ struct FieldOfView {
 };
 
 FieldOfView read_field_of_view(Query& query) {
-    if (query.has("fov") && query.has("focal_length")) query.fault("both `fov` and `focal_length` are given", "keep one of the two");
+    if (query.has("fov") && query.has("focal_length"))
+        query.fault("both `fov` and `focal_length` are given", "keep one of the two");
     using Axis = FieldOfView::Axis;
     const double fov = query.real("fov", 45.0, Range{0.0, 179.999, true});
     const auto axis = static_cast<Axis>(query.choice("fov_axis", {"x", "y", "diagonal", "smaller", "larger"}, 0));
@@ -81,7 +86,8 @@ float horizontal_degrees(Query& query, const Film& film) {
 PerspectiveCamera read_perspective(Query& query, const Film& film) {
     PerspectiveCamera camera;
     const glm::dmat4 to_world = query.transform("to_world");
-    if (has_scale(to_world)) query.fault_at("to_world", "the transform of a camera cannot scale", "remove the scale factors");
+    if (has_scale(to_world))
+        query.fault_at("to_world", "the transform of a camera cannot scale", "remove the scale factors");
     camera.to_world = glm::mat4(to_world);
     camera.fov_x_degrees = horizontal_degrees(query, film);
     const double near_clip = query.real("near_clip", 0.01, positive);
@@ -89,8 +95,8 @@ PerspectiveCamera read_perspective(Query& query, const Film& film) {
     if (near_clip >= far_clip) query.fault("`near_clip` is not below `far_clip`", "");
     camera.near_clip = static_cast<float>(near_clip);
     camera.far_clip = static_cast<float>(far_clip);
-    camera.principal_point_offset = glm::vec2(glm::dvec2(query.real("principal_point_offset_x", 0.0),
-                                                         query.real("principal_point_offset_y", 0.0)));
+    camera.principal_point_offset = glm::vec2(
+        glm::dvec2(query.real("principal_point_offset_x", 0.0), query.real("principal_point_offset_y", 0.0)));
     query.real("focus_distance", far_clip);
     const double open = query.real("shutter_open", 0.0);
     if (query.real("shutter_close", 0.0) < open && query.has("shutter_close"))

@@ -60,7 +60,8 @@ bool read_cube(Query& query, Shape& shape) {
         const auto first = static_cast<std::uint32_t>(source.positions.size());
         for (std::size_t k = 0; k < 4; ++k) {
             const int corner = corners[k];
-            source.positions.emplace_back((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1, (corner & 4) != 0 ? 1 : -1);
+            source.positions.emplace_back((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
+                                          (corner & 4) != 0 ? 1 : -1);
             source.uvs.push_back(uvs[k]);
         }
         source.triangles.emplace_back(first, first + 1, first + 2);
@@ -70,7 +71,8 @@ bool read_cube(Query& query, Shape& shape) {
     return true;
 }
 
-bool read_mesh_file(Query& query, Shape& shape, MeshSource (*load)(const std::string&, bool), bool flip_by_default) {
+bool read_mesh_file(Query& query, Shape& shape, MeshSource (*load)(const std::string&, bool),
+                    bool flip_by_default) {
     const std::string path = query.file("filename");
     const MeshOptions options = mesh_options(query);
     const bool flip = query.boolean("flip_tex_coords", flip_by_default);
@@ -98,10 +100,12 @@ bool read_ply(Query& query, Shape& shape) { return read_mesh_file(query, shape, 
 bool read_sphere(Query& query, Shape& shape) {
     const glm::dmat4 to_world = query.transform("to_world");
     const double radius = query.real("radius", 1.0);
-    const glm::dmat4 placed = to_world * translation(query.triple("center", glm::dvec3(0.0))) * scaling(glm::dvec3(radius));
+    const glm::dmat4 placed =
+        to_world * translation(query.triple("center", glm::dvec3(0.0))) * scaling(glm::dvec3(radius));
     if (radius == 0.0) query.fault_at("radius", "the radius is zero", "expected a positive number");
     else if (!is_similarity(placed))
-        query.fault_at("to_world", "a sphere cannot be scaled unevenly or sheared", "use the same scale for all axes, or a mesh");
+        query.fault_at("to_world", "a sphere cannot be scaled unevenly or sheared",
+                       "use the same scale for all axes, or a mesh");
     // A mirrored sphere shows its inside.
     shape.flip_normals = query.boolean("flip_normals", false) != (glm::determinant(placed) < 0.0);
     shape.geometry = AnalyticShape{Kind::sphere, glm::mat4(placed)};
@@ -158,7 +162,8 @@ constexpr std::array<Plugin, 7> plugins{{
 int material_index(Context& context, const std::shared_ptr<const Material>& material) {
     if (material == nullptr) return -1;
     auto& materials = context.scene.materials;
-    const auto [entry, fresh] = context.material_indices.emplace(material.get(), static_cast<int>(materials.size()));
+    const auto [entry, fresh] =
+        context.material_indices.emplace(material.get(), static_cast<int>(materials.size()));
     if (fresh) materials.push_back(*material);
     return entry->second;
 }
@@ -181,9 +186,11 @@ void read_shape(Context& context, const Object& object) {
     const Object* emitter = only_child(query, "emitter");
     const Object* bsdf_object = only_child(query, "bsdf");
     if (emitter != nullptr) shape.emitter = read_area_emitter(context, *emitter);
-    const Bsdf bsdf = bsdf_object != nullptr ? read_bsdf(context, *bsdf_object) : default_bsdf(context, emitter != nullptr);
+    const Bsdf bsdf =
+        bsdf_object != nullptr ? read_bsdf(context, *bsdf_object) : default_bsdf(context, emitter != nullptr);
     for (const Child* medium : query.children("medium"))
-        context.faults.add(medium->place, object.label(), "participating media are not supported", "remove the medium");
+        context.faults.add(medium->place, object.label(), "participating media are not supported",
+                           "remove the medium");
     query.accept({"silhouette_sampling_weight"});
     query.finish();
     if (!usable || bsdf.front == nullptr) return;

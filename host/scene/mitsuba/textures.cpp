@@ -15,7 +15,8 @@ using Result = std::shared_ptr<const Texture>;
 // The linear part of x and y, and the translation.
 glm::mat3 uv_transform(Query& query) {
     const glm::dmat4 matrix = query.transform("to_uv");
-    return glm::mat3(glm::dmat3(glm::dvec3(matrix[0][0], matrix[0][1], 0.0), glm::dvec3(matrix[1][0], matrix[1][1], 0.0),
+    return glm::mat3(glm::dmat3(glm::dvec3(matrix[0][0], matrix[0][1], 0.0),
+                                glm::dvec3(matrix[1][0], matrix[1][1], 0.0),
                                 glm::dvec3(matrix[3][0], matrix[3][1], 1.0)));
 }
 
@@ -29,7 +30,8 @@ Result read_bitmap(Query& query, TextureUse use) {
     const std::string path = query.file("filename");
     const bool raw = query.boolean("raw", false);
     Bitmap options;
-    options.filter = query.choice("filter_type", {"nearest", "bilinear"}, 1) == 0 ? Filter::nearest : Filter::bilinear;
+    options.filter =
+        query.choice("filter_type", {"nearest", "bilinear"}, 1) == 0 ? Filter::nearest : Filter::bilinear;
     options.wrap = static_cast<Wrap>(query.choice("wrap_mode", {"repeat", "mirror", "clamp"}, 0));
     const glm::mat3 to_uv = uv_transform(query);
     query.choice("format", {"auto", "variant", "float16", "fp16", "uint8"}, 0);
