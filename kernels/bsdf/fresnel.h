@@ -17,7 +17,7 @@ typedef struct {
 // With C the cosine above the interface and G = eta times the cosine below it, Snell's law reads G^2 - C^2 = eta^2 - 1,
 // and the amplitudes of both polarizations follow without differences of nearly equal numbers:
 //   r_s = (1 - eta^2) / (C + G)^2
-//   r_p = (eta^2 - 1) ((eta^2 + 1) C^2 - 1) / (eta^2 C + G)^2
+//   r_p = (eta^2 - 1) ((eta^2 + 1) C^2 - 1) / (eta^2 C + G)^2,  (eta^2 + 1) C^2 - 1 = (eta^2 + 1) G^2 - eta^4
 // Born, Wolf 1999, "Principles of Optics", section 1.5.2, rationalized.
 INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
     Int above = cos_i >= 0.0f;
@@ -40,17 +40,19 @@ INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
     Float over_s = inverse * squared_p;
     Float over_p = inverse * squared_s;
     Float r_s = contrast * over_s;
-    Float r_p = contrast * madd(eta_squared + 1.0f, C * C, (Float)-1.0f) * over_p;
+    // The same in C or in G, whichever is given.
+    Float brewster = madd(eta_squared + 1.0f, known * known, SELECT(above, (Float)-1.0f, -(eta_squared * eta_squared)));
+    Float r_p = contrast * brewster * over_p;
     Float reflectance = LESSER(0.5f * madd(r_s, r_s, r_p * r_p), ONE);
     Float transmittance = LESSER(2.0f * C * G * madd(eta_squared, over_p, over_s), ONE);
 
-    // Matched indices: C = G, and both formulas are 0 / 0 at grazing incidence.
+    // Matched indices: the formulas are 0 / 0 at grazing incidence.
     Int matched = contrast == 0.0f;
     DielectricFresnel f;
     f.reflectance = SELECT(matched, ZERO, SELECT(refracts, reflectance, ONE));
     f.transmittance = SELECT(matched, ONE, SELECT(refracts, transmittance, ZERO));
     Float cos_t = SELECT(above, -(G * inverse_eta), C);
-    f.cos_t = SELECT(refracts, cos_t, ZERO);
+    f.cos_t = SELECT(matched, -cos_i, SELECT(refracts, cos_t, ZERO));
     f.eta_it = SELECT(above, eta, inverse_eta);
     f.eta_ti = SELECT(above, inverse_eta, eta);
     return f;

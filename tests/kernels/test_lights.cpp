@@ -250,12 +250,14 @@ TEST_P(Lights, DarkOnTheOtherSide) {
         for (const LightResult& s : light.sample(random_queries(m, 1024, 9))) {
             // Behind a point of the light, nearly on it.
             LightQuery q = query_of(m, {0.3F, 0.6F});
-            q.reference = s.point - s.normal * static_cast<float>(0.01 * std::max(m.radius, glm::length(m.center - glm::dvec3(m.reference))));
+            q.reference = s.point - s.normal * (0.01F * glm::distance(s.point, glm::vec3(m.center)));
             queries.push_back(q);
         }
+        // From inside, an outward sphere is dark altogether; other shapes may still face their back with another part.
+        const bool enclosed = GetParam().name == "sphere" && m.radius > 0.0;
         for (const LightResult& s : light.sample(queries)) {
             const bool faces = glm::dot(s.direction, s.normal) < 0.0F;
-            ASSERT_EQ(s.radiance == glm::vec3(0.0F), !faces);
+            ASSERT_EQ(s.radiance == glm::vec3(0.0F), enclosed || !faces);
         }
     }
 }
