@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
+#include "cl/cache_lock.h"
 #include "cl/program.h"
 #include "render/device_buffers.h"
 #include "render/flatten.h"
@@ -35,6 +37,7 @@ struct Renderer::State {
     void launch(const char* stage, std::uint64_t items);
     void collect_finished();
     std::uint64_t queued(std::uint32_t queue) const;
+    std::uint64_t unstarted_paths() const;
     void warm_up();
 
     const Device& device;
@@ -79,6 +82,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
     stats.setup_parts["tables"] += seconds_since(start);
 
     start = Clock::now();
+    const CacheLock lock(kernel_cache_folder());
     const Program program(device, program_source(scene_data.features, settings.lanes, slots, samples), "scene.cl");
     for (const std::string& stage : scene_data.features.stages()) {
         Kernel& kernel = kernels.emplace(stage, Kernel(program, stage.c_str())).first->second;
@@ -107,18 +111,24 @@ std::uint64_t Renderer::State::queued(std::uint32_t queue) const {
     return sum;
 }
 
+std::uint64_t Renderer::State::unstarted_paths() const {
+    std::uint64_t sum = 0;
+    for (const BlockHeader& block : headers) sum += block.path_count - std::min(block.next_path, block.path_count);
+    return sum;
+}
+
 // One vertex of every path in flight. The host reads the queues' counts once a round, and launches only what they hold.
 void Renderer::State::run_round() {
-    std::uint64_t unstarted = 0;
-    for (const BlockHeader& block : headers) unstarted += block.path_count - std::min(block.next_path, block.path_count);
-    launch("generate", unstarted);
-    kernels.at("intersect_closest");
+    const std::uint64_t unstarted = unstarted_paths();
+    std::optional<ClEvent> generate;
+    if (unstarted > 0) generate = kernels.at("generate").launch(device, block_count);
     ClEvent intersect = kernels.at("intersect_closest").launch(device, block_count);
     ClEvent sort = kernels.at("sort_paths").launch(device, block_count);
     device.finish();
 
     std::uint64_t traced = 0;
     for (const BlockHeader& block : headers) traced += block.traced;
+    if (generate) timer.add("generate", unstarted - unstarted_paths(), std::move(*generate));
     timer.add("intersect_closest", traced, std::move(intersect));
     timer.add("sort_paths", traced, std::move(sort));
     timer.collect();
