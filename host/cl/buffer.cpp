@@ -19,7 +19,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes) : bytes_(bytes) {
     if (bytes > device.info().max_allocation_bytes) {
         throw ClError("a buffer of " + std::to_string(bytes >> 20U) + " MiB exceeds the largest the device allows, " +
                       std::to_string(device.info().max_allocation_bytes >> 20U) +
-                      " MiB; reduce the scene, or raise POCL_MEMORY_LIMIT (in GiB) if memory is free");
+                      " MiB; reduce the meshes or textures of the scene");
     }
     // Vector loads at the end of a queue or table may read past it by less than two lines.
     const std::size_t padded = bytes + 2 * cache_line;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "cl/cache_lock.h"
 #include "cl/program.h"
@@ -37,7 +38,7 @@ struct Renderer::State {
     void launch(const char* stage, std::uint64_t items);
     void collect_finished();
     std::uint64_t queued(std::uint32_t queue) const;
-    std::uint64_t unstarted_paths() const;
+    bool has_unstarted_paths() const;
     void warm_up();
 
     const Device& device;
@@ -111,28 +112,30 @@ std::uint64_t Renderer::State::queued(std::uint32_t queue) const {
     return sum;
 }
 
-std::uint64_t Renderer::State::unstarted_paths() const {
-    std::uint64_t sum = 0;
-    for (const BlockHeader& block : headers) sum += block.path_count - std::min(block.next_path, block.path_count);
-    return sum;
+bool Renderer::State::has_unstarted_paths() const {
+    return std::ranges::any_of(headers, [](const BlockHeader& block) { return block.next_path < block.path_count; });
 }
 
 // One vertex of every path in flight. The host reads the queues' counts once a round, and launches only what they hold.
 void Renderer::State::run_round() {
-    const std::uint64_t unstarted = unstarted_paths();
     std::optional<ClEvent> generate;
-    if (unstarted > 0) generate = kernels.at("generate").launch(device, block_count);
+    if (has_unstarted_paths()) generate = kernels.at("generate").launch(device, block_count);
     ClEvent intersect = kernels.at("intersect_closest").launch(device, block_count);
     ClEvent sort = kernels.at("sort_paths").launch(device, block_count);
     device.finish();
 
+    std::uint64_t started = 0;
     std::uint64_t traced = 0;
-    for (const BlockHeader& block : headers) traced += block.traced;
-    if (generate) timer.add("generate", unstarted - unstarted_paths(), std::move(*generate));
+    for (BlockHeader& block : headers) {
+        started += std::exchange(block.started, 0);
+        traced += block.traced;
+    }
+    if (generate) timer.add("generate", started, std::move(*generate));
     timer.add("intersect_closest", traced, std::move(intersect));
     timer.add("sort_paths", traced, std::move(sort));
     timer.collect();
-    stats.rays["closest"] += traced;
+    stats.rays["camera"] += started;
+    stats.rays["bounce"] += traced - started;
 
     // Shadow rays of the vertex before go first: a path gains its radiance in order of its vertices.
     const std::uint64_t shadow = queued(QUEUE_SHADOW);

@@ -20,7 +20,8 @@
 #define LANES 16
 #endif
 
-#define INLINE static inline __attribute__((always_inline))
+// A program takes from a header what it needs.
+#define INLINE static inline __attribute__((always_inline, unused))
 #define LIKELY(x) __builtin_expect(!!(x), 1)
 #define UNLIKELY(x) __builtin_expect(!!(x), 0)
 
@@ -80,11 +81,6 @@ typedef uint UInt;
 
 // a * b + c with one rounding on machines that can (the only contraction there is).
 INLINE Float madd(Float a, Float b, Float c) {
-#pragma OPENCL FP_CONTRACT ON
-    return a * b + c;
-}
-
-INLINE float madd1(float a, float b, float c) {
 #pragma OPENCL FP_CONTRACT ON
     return a * b + c;
 }

@@ -10,9 +10,6 @@
 // Bound on the relative error of n roundings in a row (Higham 2002, "Accuracy and Stability of Numerical Algorithms").
 #define GAMMA(n) ((n) * HALF_ULP / (1.0f - (n) * HALF_ULP))
 
-// The next float away from zero, for lanes of |x| below infinity.
-INLINE Float next_away_from_zero(Float x) { return as_Float(as_UInt(x) + (UInt)1u); }
-
 // Moves each coordinate one float further in the direction of `offset`.
 INLINE Float round_along(Float x, Float offset) {
     Int grows = (x < 0.0f) == (offset < 0.0f); // the move goes away from zero

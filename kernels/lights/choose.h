@@ -85,6 +85,7 @@ INLINE LightSample sample_light(LightInput in, Vec3 reference, Float u1, Float u
     return s;
 }
 
+#if HAS_SURFACE_LIGHTS
 // Density of `sample_light` producing a direction in which a surface light was hit.
 INLINE Float surface_light_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {
     Float pdf = ZERO;
@@ -98,5 +99,6 @@ INLINE Float surface_light_pdf(LightInput in, Vec3 reference, Vec3 direction, Fl
 #undef PDF_LIGHT
     return pdf;
 }
+#endif
 
 #endif

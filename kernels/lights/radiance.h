@@ -3,10 +3,8 @@
 #define WAVELOBE_LIGHTS_RADIANCE_H
 
 #include "lights/light.h"
-#if HAS_TEXTURED_EMITTERS
-#include "bsdf/texture.h"
-#endif
 
+// With HAS_TEXTURED_EMITTERS goes HAS_TEXTURES, which brings bsdf/texture.h.
 // Towards any direction on the emitting side, at texture coordinates (u, v); W / (m^2 sr).
 INLINE Rgb light_radiance(LightInput in, Float u, Float v) {
     Rgb radiance = light_vector(in, radiance);

@@ -184,7 +184,9 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
     Vec3 n = out->normal;
+#if HAS_SMOOTH_NORMALS || HAS_UVS
     UInt triangle = out->primitive - first_primitive;
+#endif
 #if HAS_SMOOTH_NORMALS
     UInt first_normal = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_normal);
     Int smooth = first_normal != (UInt)WAVELOBE_NONE;

@@ -37,8 +37,9 @@ struct BlockHeader {
     Uint32 next_path;          // first id not yet started
     Uint32 count[QUEUE_COUNT]; // items in each queue
     Uint32 nonfinite_path;     // id of a path whose sample was not finite; WAVELOBE_NONE: none
-    Uint32 traced;             // rays of the last round
-    Uint32 unused[2];
+    Uint32 started;            // camera rays of the last round
+    Uint32 traced;             // all rays of the last round
+    Uint32 unused[1];
 };
 WAVELOBE_CHECK_SIZE(BlockHeader, 64);
 

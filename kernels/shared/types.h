@@ -2,7 +2,7 @@
 #ifndef WAVELOBE_SHARED_TYPES_H
 #define WAVELOBE_SHARED_TYPES_H
 
-#ifdef __OPENCL_VERSION__
+#ifdef __OPENCL_C_VERSION__
 typedef uint Uint32;
 #define WAVELOBE_CHECK_SIZE(type, bytes) typedef char check_size_of_##type[sizeof(struct type) == (bytes) ? 1 : -1]
 #else

@@ -45,6 +45,7 @@ kernel void generate(global struct BlockHeader *headers, global float *blocks,
 #endif
         count += popcount(bits);
     }
+    block.header->started = count - *rays.count;
     *rays.count = count;
     block.header->next_path = next;
 }

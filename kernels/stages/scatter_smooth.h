@@ -16,10 +16,9 @@
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
 INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, uint light_count,
                                 const TracedPath *path, const Surface *surface, const SmoothLobes *lobes) {
-    Float u_light, unused, u1, u2;
-#if LIGHT_COUNT == 1
-    u_light = ZERO;
-#else
+    Float u_light = ZERO, u1, u2;
+#if LIGHT_COUNT > 1
+    Float unused;
     sample_2d(sample, vertex_pair(path->depth, PAIR_CHOICE), &u_light, &unused);
 #endif
     sample_2d(sample, vertex_pair(path->depth, PAIR_LIGHT), &u1, &u2);
@@ -60,9 +59,10 @@ typedef struct { int none; } LightInput;
 
 // A direction from the lobe of the queue's class.
 INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId sample, UInt depth, Vec3 wi) {
-    Float u1, u2, unused, u3 = ZERO;
+    Float u1, u2, u3 = ZERO;
     sample_2d(sample, vertex_pair(depth, PAIR_DIRECTION), &u1, &u2);
 #if HAS_TRANSMISSION // a lobe on both sides of the surface chooses between them
+    Float unused;
     sample_2d(sample, vertex_pair(depth, PAIR_CHOICE), &unused, &u3);
 #endif
     return lobe_class == LOBE_CLASS_GLOSSY ? sample_glossy_lobe(lobes, wi, u1, u2, u3)

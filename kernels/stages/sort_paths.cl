@@ -75,8 +75,10 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
         uint out = lane_bits(live & !found);
         if (out) escaped = move_paths(QUEUE(block, ESCAPED), escaped, rays, i, throughput, out);
 #endif
+#if HAS_SURFACE_LIGHTS || !HAS_LOBE_CHOICE
         UInt shape = gather_uint(view.primitive_shapes, primitive_of_hit(view, SELECT(found, hit, (UInt)0u)));
         UInt flags = GATHER_UINT_FIELD(view.shapes, Shape, shape, flags);
+#endif
         UInt depth = read_uint(rays, PATH_DEPTH, i);
 #if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
         Int hidden = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u) & (depth == (UInt)0u);

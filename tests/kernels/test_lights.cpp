@@ -147,7 +147,7 @@ TEST_P(Lights, HitsHaveTheDensityOfTheirSample) {
 TEST_P(Lights, SamplesEstimateTheIrradiance) {
     LightProbe light = probe();
     constexpr int shifts = 32;
-    constexpr int points = 1 << 15;
+    constexpr int points = 1 << 13;
     for (const LightModel& m : all_.models) {
         SCOPED_TRACE(m.label);
         std::mt19937 random(12);
@@ -176,7 +176,7 @@ TEST_P(Lights, SamplesEstimateTheIrradiance) {
         }
         const glm::dvec3 error = glm::sqrt(glm::max(squares - mean * mean, 0.0) / (shifts - 1.0));
         for (int k = 0; k < 3; ++k) {
-            EXPECT_LT(error[k], 3e-4) << "too noisy to tell";
+            EXPECT_LT(error[k], 6e-4) << "too noisy to tell";
             // Student's t for 31 degrees of freedom and a chance of 1e-5, and a few dozen roundings.
             EXPECT_NEAR(mean[k], 1.0, 5.3 * error[k] + 32.0 * half_ulp) << "standard error " << error[k];
         }

@@ -1,0 +1,143 @@
+// Traces rays on the device, and what their hits may be according to double precision.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "support/probe.h"
+#include "support/triangle_meshes.h"
+
+namespace wavelobe::test {
+
+struct TestRay {
+    glm::vec3 origin;
+    glm::vec3 direction;
+    float limit = std::numeric_limits<float>::infinity();
+};
+
+struct TestHit {
+    float t = 0.0F;
+    float u = 0.0F;
+    float v = 0.0F;
+    std::uint32_t slot = HIT_NONE;  // block * 8 + lane
+    std::uint32_t any = 0;          // what the any-hit traversal says of the same ray
+
+    bool operator==(const TestHit&) const = default;
+};
+
+class TraversalProbe {
+public:
+    explicit TraversalProbe(bool portable = false)
+        : probe_(source, {.lanes = 16, .defines = portable ? "-DWAVELOBE_PORTABLE" : ""}) {}
+
+    std::vector<TestHit> trace(const Bvh& bvh, const std::vector<TestRay>& rays) {
+        std::vector<TestHit> hits(rays.size());
+        const std::vector<TriangleBlock> blocks = bvh.blocks.empty() ? std::vector<TriangleBlock>(1) : bvh.blocks;
+        const auto count = static_cast<cl_uint>(rays.size());
+        probe_.run("trace", (rays.size() + rays_per_item - 1) / rays_per_item, bvh.nodes, blocks, rays, count, hits);
+        return hits;
+    }
+
+private:
+    static constexpr std::size_t rays_per_item = 256;
+    static constexpr const char* source = R"(
+#define HAS_ANALYTIC 0
+#define BVH_STACK 512u
+#include "shapes/traversal.h"
+
+typedef struct { float t, u, v; uint slot, any; } TestHit;
+
+kernel void trace(global const uchar *nodes, global const uchar *blocks, global const float *rays, uint count,
+                  global TestHit *hits) {
+    Geometry geometry = {nodes, blocks};
+    uint first = (uint)get_global_id(0) * 256u;
+    for (uint i = first; i < min(first + 256u, count); i++) {
+        global const float *p = rays + (size_t)i * 7u;
+        Ray ray = {p[0], p[1], p[2], p[3], p[4], p[5], p[6]};
+        Hit h = trace_closest(geometry, &ray);
+        TestHit out = {h.t, h.u, h.v, h.primitive, trace_any(geometry, &ray)};
+        hits[i] = out;
+    }
+}
+)";
+    Probe probe_;
+};
+
+// ---- reference ------------------------------------------------------------------------------------------
+
+// A ray against a triangle in double, with bounds on what the float test of kernels/shapes/triangle_block.h may be off by.
+// Its inputs are floats, so that double itself is as good as exact. The bounds follow Pharr, Jakob, Humphreys,
+// "Physically Based Rendering", "Managing Rounding Error": relative gamma(n) = n 2^-24 for n roundings, on the largest
+// magnitudes of the sheared coordinates.
+struct ReferenceHit {
+    bool certain = false;   // inside beyond doubt
+    bool possible = false;  // inside or within rounding of an edge
+    double t = 0.0;
+    double t_error = 0.0;
+};
+
+inline double gamma_bound(int n) { return n * 0x1p-24 / (1.0 - n * 0x1p-24); }
+
+inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& triangle) {
+    const glm::dvec3 d{ray.direction};
+    const glm::dvec3 size = glm::abs(d);
+    const glm::length_t kz = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
+    const glm::length_t kx = (kz + 1) % 3;
+    const glm::length_t ky = (kz + 2) % 3;
+    glm::dvec3 p[3];
+    glm::dvec3 most{0.0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 q = glm::dvec3(triangle[i]) - glm::dvec3(ray.origin);
+        p[i] = {q[kx] - d[kx] / d[kz] * q[kz], q[ky] - d[ky] / d[kz] * q[kz], q[kz] / d[kz]};
+        most = glm::max(most, glm::abs(p[i]));
+    }
+    const auto area = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.y - a.y * b.x; };
+    const glm::dvec3 w{area(p[2], p[1]), area(p[0], p[2]), area(p[1], p[0])};
+    const double det = w.x + w.y + w.z;
+    const double dx = gamma_bound(5) * (most.x + most.z);
+    const double dy = gamma_bound(5) * (most.y + most.z);
+    const double dz = gamma_bound(5) * most.z;
+    const double dw = 2.0 * (gamma_bound(2) * most.x * most.y + dy * most.x + dx * most.y);
+    const double w_most = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
+    const double least = std::min({w.x, w.y, w.z});
+    const double largest = std::max({w.x, w.y, w.z});
+
+    ReferenceHit hit;
+    hit.possible = least >= -dw || largest <= dw;
+    // The sum of three areas is off by three times their error and its own roundings.
+    if (std::abs(det) <= 3.0 * dw + gamma_bound(3) * w_most) return hit;
+    hit.t = (w.x * p[0].z + w.y * p[1].z + w.z * p[2].z) / det;
+    hit.t_error = 3.0 * (gamma_bound(4) * w_most * most.z + dw * most.z + dz * w_most) / (std::abs(det) - 3.0 * dw);
+    hit.certain = (least > dw || largest < -dw) && hit.t > 2.0 * hit.t_error;
+    return hit;
+}
+
+inline std::uint32_t primitive_of(const Bvh& bvh, std::uint32_t slot) { return bvh.blocks[slot / 8].primitive[slot % 8]; }
+
+// Empty if the hit is one that the ray may have; otherwise what is wrong with it.
+inline std::string fault_of_hit(const TestRay& ray, const TestHit& hit, const Bvh& bvh, const Triangles& triangles) {
+    const bool found = hit.slot != HIT_NONE;
+    if (!found && hit.t != ray.limit) return "a miss leaves t at the limit";
+    double found_error = 0.0;
+    if (found) {
+        const ReferenceHit own = reference_hit(ray, triangles[primitive_of(bvh, hit.slot)]);
+        if (!own.possible) return "the ray passes beside the triangle it is said to hit";
+        // A triangle seen edge-on (det lost in rounding) has no distance to compare with.
+        if (own.t_error > 0.0 && std::abs(hit.t - own.t) > own.t_error) return "distance beyond its error bound";
+        if (!(hit.t > 0.0F && hit.t < ray.limit)) return "hit outside (0, limit)";
+        if (hit.any == 0) return "the any-hit traversal misses it";
+        found_error = own.t_error;
+    }
+    for (const TriangleVertices& triangle : triangles) {
+        const ReferenceHit other = reference_hit(ray, triangle);
+        if (!other.certain || other.t + other.t_error >= static_cast<double>(ray.limit)) continue;
+        if (hit.any == 0) return "any-hit misses a triangle";
+        if (!found) return "a triangle in the way is missed";
+        if (other.t + other.t_error < static_cast<double>(hit.t) - found_error) return "a nearer triangle is missed";
+    }
+    return {};
+}
+
+}  // namespace wavelobe::test
