@@ -76,7 +76,7 @@ int run(const SceneArguments& arguments) {
     fmt::print("shapes      {}: {} triangles, {} spheres, disks and cylinders\n", scene.shapes.size(),
                format_count(summary.triangles), format_count(summary.analytic_shapes));
     fmt::print("materials   {}\n", format_kinds(materials));
-    fmt::print("emitters    {}; {} lights to sample\n", format_kinds(emitters), format_count(summary.lights));
+    fmt::print("emitters    {}; lights to sample {}\n", format_kinds(emitters), format_count(summary.lights));
     fmt::print("features    {}\n", fmt::join(summary.features, " "));
     fmt::print("memory      about {} of device buffers\n", format_bytes(summary.device_bytes));
     return exit_ok;

@@ -68,11 +68,13 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       }()),
       scheduler(scene_data.parameters, static_cast<std::uint32_t>(settings.samples_per_pixel),
                 samples_per_block(settings.samples_per_pixel)),
-      block_count(std::min(scheduler.tile_count(), blocks_per_thread * std::max(device.info().compute_units, 1U))),
+      block_count(std::min(scheduler.tile_count(), (getenv("BPT") ? std::size_t(atoi(getenv("BPT"))) : blocks_per_thread) * std::max(device.info().compute_units, 1U))),
       buffers(device) {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
     stats.setup_parts["bvh"] = seconds_since(start);
+    // Seven pushed a level and the sentinel; the usual size serves nearly every scene with one and the same program.
+    scene_data.features.bvh_stack = std::max(scene_data.features.bvh_stack, 7 * bvh.depth + 1);
 
     const int samples = static_cast<int>(samples_per_block(settings.samples_per_pixel));
     start = Clock::now();

@@ -1,46 +1,50 @@
 #include "tables/filter_table.h"
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "shared/filter_table.h"
 
 namespace wavelobe {
 namespace {
 
-constexpr int filter_steps = 1024;      // FILTER_STEPS of kernels/sampling/warps.h
-constexpr int integration_steps = 1 << 16;
-
-// One dimension of the separable filter, not normalized; as Mitsuba 3 defines them.
-double filter_value(const ReconstructionFilter& filter, double x) {
-    const double radius = filter.radius;
+// Integral of the filter (unnormalized) from 0 to x, for x in [0, radius].
+std::function<double(double)> integral_from_centre(const ReconstructionFilter& filter) {
+    const double r = filter.radius, s = filter.stddev;
     switch (filter.kind) {
-        case ReconstructionFilter::Kind::box: return 1.0;
-        case ReconstructionFilter::Kind::tent: return std::max(0.0, 1.0 - std::abs(x) / radius);
-        case ReconstructionFilter::Kind::gaussian: {
-            const double alpha = -0.5 / (static_cast<double>(filter.stddev) * filter.stddev);
-            return std::max(0.0, std::exp(alpha * x * x) - std::exp(alpha * radius * radius));
-        }
+        case ReconstructionFilter::Kind::tent:
+            return [r](double x) { return x - x * x / (2 * r); };
+        case ReconstructionFilter::Kind::gaussian:
+            return [r, s](double x) {
+                const double scale = s * std::sqrt(std::numbers::pi / 2);
+                return scale * std::erf(x / (s * std::numbers::sqrt2)) - x * std::exp(-r * r / (2 * s * s));
+            };
+        case ReconstructionFilter::Kind::box:
+            break;
     }
-    return 0.0;
+    return [](double x) { return x; };
+}
+
+// The x in [0, radius] where the increasing function reaches `value`.
+double bisect(const std::function<double(double)>& function, double radius, double value) {
+    double low = 0, high = radius;
+    for (double middle = radius / 2; low < middle && middle < high; middle = (low + high) / 2)
+        (function(middle) < value ? low : high) = middle;
+    return high;
 }
 
 }  // namespace
 
 std::vector<float> build_filter_table(const ReconstructionFilter& filter) {
-    const double radius = filter.radius;
-    const double width = 2.0 * radius / integration_steps;
-    std::vector<double> cumulative(integration_steps + 1, 0.0);
-    for (int i = 0; i < integration_steps; ++i) {
-        cumulative[static_cast<std::size_t>(i) + 1] =
-            cumulative[static_cast<std::size_t>(i)] + filter_value(filter, -radius + (i + 0.5) * width);
-    }
-    std::vector<float> table(filter_steps + 1);
-    std::size_t cell = 0;
-    for (std::size_t step = 0; step < table.size(); ++step) {
-        const double target = cumulative.back() * static_cast<double>(step) / filter_steps;
-        while (cell + 1 < integration_steps && cumulative[cell + 1] < target) ++cell;
-        const double share = cumulative[cell + 1] - cumulative[cell];
-        const double inside = share > 0.0 ? (target - cumulative[cell]) / share : 0.0;
-        table[step] = static_cast<float>(-radius + (static_cast<double>(cell) + inside) * width);
+    const auto integral = integral_from_centre(filter);
+    const double radius = filter.radius, total = integral(radius);
+    constexpr unsigned half = FILTER_TABLE_CELLS / 2;
+    std::vector<float> table(FILTER_TABLE_CELLS + 1);
+    for (unsigned i = 1; i <= half; ++i) {
+        const double x = i == half ? radius : bisect(integral, radius, total * i / half);
+        table[half + i] = static_cast<float>(x);
+        table[half - i] = static_cast<float>(-x);
     }
     return table;
 }

@@ -19,7 +19,6 @@
 #define HAS_BECKMANN 1
 #endif
 
-#define INV_SQRT_PI 0.5641895835477563f
 // Smoother surfaces than this have lobes below the resolution of a float direction.
 #define MIN_ALPHA 1e-4f
 
@@ -101,7 +100,7 @@ INLINE Masking microfacet_masking(Microfacets d, Vec3 wi, Vec3 wo) {
         // erf(10) is one, and the exponential is zero
         Float cotangent = LESSER(wi.z / stretched_i, (Float)10.0f);
         Float visible_area = madd(wi.z, 1.0f + lane_erf(cotangent),
-                                  INV_SQRT_PI * stretched_i * lane_exp(-cotangent * cotangent));
+                                  INV_SQRT_PI_F * stretched_i * lane_exp(-cotangent * cotangent));
         Float both = beckmann_masking_over_cos(stretched_i, wi.z) * beckmann_masking_over_cos(stretched_o, wo.z) * wo.z;
         g.visible = SELECT(d.beckmann, 2.0f / visible_area, g.visible);
         g.both = SELECT(d.beckmann, both, g.both);
@@ -140,23 +139,29 @@ INLINE Vec3 sample_visible_beckmann(Microfacets d, Vec3 wi, Float u1, Float u2) 
     Float cotangent = LESSER(wi.z / stretched, (Float)10.0f);
     Float erf_cot = lane_erf(cotangent);
     Float highest = LESSER(erf_cot, -lowest);
-    Float sine_over_root = sine * INV_SQRT_PI;
+    Float sine_over_root = sine * INV_SQRT_PI_F;
     Float u = GREATER(u1, (Float)HALF_ULP);
     Float target = u * madd(cosine, 1.0f + erf_cot, sine_over_root * lane_exp(-cotangent * cotangent));
     Float y = erf_cot - (1.0f + erf_cot) * lane_erf(sqrt(-lane_log(u)));
-    Float slope;
+    Float slope, exponential, previous;
+#pragma unroll
     for (int step = 0; step < 3; ++step) {
-        y = LESSER(GREATER(y, lowest), highest);
-        slope = lane_erf_inverse(y);
-        Float exponential = lane_exp(-slope * slope);
-        Float value = madd(cosine, 1.0f + y, madd(sine_over_root, exponential, -target));
+        previous = LESSER(GREATER(y, lowest), highest);
+        slope = lane_erf_inverse(previous);
+        exponential = lane_exp(-slope * slope);
+        Float value = madd(cosine, 1.0f + previous, madd(sine_over_root, exponential, -target));
         // The derivative vanishes at the largest slope, where the bound on y stops the step.
         Float derivative = GREATER(madd(-slope, sine, cosine), sine * (2.0f * HALF_ULP));
-        Float half_curvature = -0.5f * sine / (2.0f * INV_SQRT_PI * exponential);
-        // A Halley step twice as long as Newton's is not trusted.
-        y -= value / GREATER(derivative - value * half_curvature / derivative, 0.5f * derivative);
+        // Halley's, times the exponential; the second derivative is -sine sqrt(pi) / (2 exponential). A step twice as long
+        // as Newton's is not trusted.
+        Float scaled = derivative * exponential;
+        Float denominator = madd(scaled, derivative, 0.25f * SQRT_PI_F * sine * value);
+        y = previous - value * scaled / GREATER(denominator, 0.5f * scaled * derivative);
     }
-    slope = lane_erf_inverse(LESSER(GREATER(y, lowest), highest));
+    // The last step is short: erf_inverse by its Taylor polynomial.
+    Float change = (0.5f * SQRT_PI_F) * (LESSER(GREATER(y, lowest), highest) - previous) / exponential;
+    slope = madd(change, madd(change, madd(change, madd(slope * slope, (Float)(4.0f / 3.0f), (Float)(1.0f / 3.0f)), slope), ONE),
+                 slope);
     Float across = lane_erf_inverse(LESSER(GREATER(madd((Float)2.0f, u2, (Float)-1.0f), lowest), -lowest));
 
     // Back to the direction of the viewer; straight above any will do.

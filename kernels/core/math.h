@@ -74,20 +74,25 @@ INLINE void lane_sin_cos(Float x, Float *s, Float *c) {
     turn_by_quadrants(sin_r, cos_r, as_UInt(t), s, c);
 }
 
-// Sine and cosine of the angle 2 pi u. |u| <= 4: 1.6 ulp; exact at multiples of a quarter. The reduction is exact up to
-// |u| < 2^20.
-INLINE void lane_sin_cos_turns(Float u, Float *s, Float *c) {
-    Float t = madd(u, (Float)4.0f, (Float)ROUNDING_CONSTANT);
-    Float f = madd(u, (Float)4.0f, -(t - ROUNDING_CONSTANT));
+// Sine and cosine of the angle f pi / 2, |f| <= 1/2.
+INLINE void sin_cos_of_quarters(Float f, Float *s, Float *c) {
     Float z = f * f;
     Float p = horner((Float)-0.00460251188f, z, 0.0796803609f);
     p = horner(p, z, -0.64596349f);
     p = horner(p, z, -4.8797947e-08f);
-    Float sin_f = madd(p, f, f * HALF_PI_F);
+    *s = madd(p, f, f * HALF_PI_F);
     p = horner((Float)0.00089448638f, z, -0.0208555963f);
     p = horner(p, z, 0.253668547f);
     p = horner(p, z, -1.23370051f);
-    Float cos_f = madd(p, z, ONE);
+    *c = madd(p, z, ONE);
+}
+
+// Sine and cosine of the angle 2 pi u. |u| <= 4: 1.6 ulp; exact at multiples of a quarter. The reduction is exact up to
+// |u| < 2^20.
+INLINE void lane_sin_cos_turns(Float u, Float *s, Float *c) {
+    Float t = madd(u, (Float)4.0f, (Float)ROUNDING_CONSTANT);
+    Float sin_f, cos_f;
+    sin_cos_of_quarters(madd(u, (Float)4.0f, -(t - ROUNDING_CONSTANT)), &sin_f, &cos_f);
     turn_by_quadrants(sin_f, cos_f, as_UInt(t), s, c);
 }
 

@@ -16,7 +16,7 @@ INLINE Float constant_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t
 }
 
 INLINE LightSample constant_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
-    Vec3 direction = sample_uniform_sphere(u1, u2);
+    Vec3 direction = square_to_uniform_sphere(u1, u2);
     return infinite_light_sample(direction, constant_radiance(in, direction), (Float)INV_FOUR_PI_F, !TRUE_MASK);
 }
 

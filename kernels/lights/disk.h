@@ -7,9 +7,8 @@
 #include "sampling/warps.h"
 
 INLINE LightSample disk_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
-    Float x, y;
-    sample_concentric_disk(u1, u2, &x, &y);
-    return analytic_light_sample(in, reference, vec3(x, y, ZERO), vec3(ZERO, ZERO, ONE));
+    Vec2 d = square_to_disk(u1, u2);
+    return analytic_light_sample(in, reference, vec3(d.x, d.y, ZERO), vec3(ZERO, ZERO, ONE));
 }
 
 INLINE Float disk_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {

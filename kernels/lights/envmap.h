@@ -22,7 +22,7 @@ typedef struct {
 } EnvironmentPlace;
 
 // The density over solid angle grows without bound towards the poles. Below this sine it stays what it is there, so that
-// even its square, which the power heuristic takes, is finite for as many as 2^31 cells.
+// it and its square are finite for as many as 2^31 cells.
 #define LEAST_POLE_SINE 0x1p-36f
 
 INLINE Vec3 environment_turn(global const float *m, Vec3 d) {

@@ -67,7 +67,7 @@ INLINE LightSample sphere_sample_light(LightInput in, Vec3 reference, Float u1, 
     Float cos_alpha = madd(sin2_beta, sin_half, cos_theta * cos_beta);
     Vec3 facing = scale_add(around, sin_alpha, scale(c.axis, -cos_alpha));
 
-    AnalyticPoint p = sphere_point(m, select3(outward, facing, sample_uniform_sphere(u1, u2)));
+    AnalyticPoint p = sphere_point(m, select3(outward, facing, square_to_uniform_sphere(u1, u2)));
     Float u = ZERO, v = ZERO;
 #if HAS_TEXTURED_EMITTERS
     analytic_uv(m.kind, map_to_object(m, sub(p.position, m.origin)), &u, &v);

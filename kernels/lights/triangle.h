@@ -3,6 +3,7 @@
 #define WAVELOBE_LIGHTS_TRIANGLE_H
 
 #include "lights/area.h"
+#include "sampling/warps.h"
 
 // The point position + b1 edge1 + b2 edge2 of a triangle or parallelogram.
 INLINE LightSample planar_light_sample(LightInput in, Vec3 reference, Float b1, Float b2, Float u, Float v) {
@@ -21,13 +22,9 @@ INLINE Float planar_light_uv(LightInput in, uint component, Float b1, Float b2) 
     return madd(uv1 - uv0, b1, madd(uv2 - uv0, b2, uv0));
 }
 
-// The unit square onto the triangle with little stretching: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
 INLINE LightSample triangle_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
-    Int upper = u2 > u1;
-    Float half1 = 0.5f * u1, half2 = 0.5f * u2;
-    Float b1 = SELECT(upper, half1, u1 - half2);
-    Float b2 = SELECT(upper, u2 - half1, half2);
-    return planar_light_sample(in, reference, b1, b2, planar_light_uv(in, 0u, b1, b2), planar_light_uv(in, 1u, b1, b2));
+    Vec2 b = square_to_triangle(u1, u2);
+    return planar_light_sample(in, reference, b.x, b.y, planar_light_uv(in, 0u, b.x, b.y), planar_light_uv(in, 1u, b.x, b.y));
 }
 
 INLINE Float triangle_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {

@@ -1,9 +1,8 @@
-// Owen-scrambled Sobol points by hashing, in padded pairs of dimensions.
-// Burley 2020, "Practical Hash-Based Owen Scrambling"; constants of the hash by Vegdahl 2021.
+// Sample values: Owen-scrambled Sobol points in padded pairs of dimensions, all from hashes of where they are used, so
+// that a value is a function of (pixel, sample index, pair, seed) alone.
 //
-// A value is a function of (pixel, sample index, pair, seed) alone. Each pair shuffles the index by a nested uniform
-// scramble, takes the first two Sobol dimensions there, and scrambles both: within a pair the first 2^k samples of a pixel
-// are a (0, 2)-net, between pairs and pixels there is no structure.
+// Burley 2020, "Practical Hash-based Owen Scrambling". Each pair is the first two Sobol dimensions: a (0, 2)-sequence,
+// which scrambling keeps; nested uniform shuffling of the index makes pairs independent of each other.
 #ifndef WAVELOBE_SAMPLING_SAMPLER_H
 #define WAVELOBE_SAMPLING_SAMPLER_H
 
@@ -11,63 +10,72 @@
 
 typedef struct {
     UInt pixel_hash;
-    UInt reversed_index; // bits of the sample index in reverse order
+    UInt reversed_index;
 } SampleId;
 
-// Finalizer of MurmurHash3 (Appleby 2011): every input bit reaches every output bit.
-INLINE UInt mix_bits(UInt h) {
-    h ^= h >> 16;
-    h *= 0x85ebca6bu;
-    h ^= h >> 13;
-    h *= 0xc2b2ae35u;
-    return h ^ (h >> 16);
-}
-
 INLINE UInt reverse_bits(UInt x) {
-    x = (x << 16) | (x >> 16);
-    x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
-    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+    x = ((x >> 1) & (UInt)0x55555555u) | ((x & (UInt)0x55555555u) << 1);
+    x = ((x >> 2) & (UInt)0x33333333u) | ((x & (UInt)0x33333333u) << 2);
+    x = ((x >> 4) & (UInt)0x0f0f0f0fu) | ((x & (UInt)0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & (UInt)0x00ff00ffu) | ((x & (UInt)0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
 }
 
-// A permutation in which each bit depends on the bits below it alone: on reversed bits, an Owen scramble
-// (Laine and Karras 2011, "Stratified Sampling for Stochastic Transparency").
-INLINE UInt permute_upwards(UInt x, UInt seed) {
-    x ^= x * 0x3d20adeau;
+// A bijection in which each bit of the result depends on every bit of x: the multiply-xorshift finaliser of MurmurHash3
+// (Appleby 2011) with the shifts and factors Wellons found in 2018 to have the least bias ("Prospecting for Hash
+// Functions").
+INLINE UInt mix_bits(UInt x) {
+    x = (x ^ (x >> 16)) * (UInt)0x21f0aaadu;
+    x = (x ^ (x >> 15)) * (UInt)0xd35a2d97u;
+    return x ^ (x >> 15);
+}
+
+// The next of several seeds drawn from one well-mixed hash.
+INLINE UInt next_seed(UInt h) { return (h ^ (h >> 16)) * (UInt)0x7feb352du; }
+
+// Owen scrambling of a number whose bits are reversed: a bit flips by a hash of the bits below it. Laine and Karras
+// 2011, "Stratified Sampling for Stochastic Transparency", with the rounds and factors of Vegdahl 2021, "Building a
+// Better LK Hash".
+INLINE UInt scramble_reversed(UInt x, UInt seed) {
+    x ^= x * (UInt)0x3d20adeau;
     x += seed;
-    x *= (seed >> 16) | 1u;
-    x ^= x * 0x05526c56u;
-    return x ^ (x * 0x53a22864u);
+    x *= (seed >> 16) | (UInt)1u;
+    x ^= x * (UInt)0x05526c56u;
+    x ^= x * (UInt)0x53a22864u;
+    return x;
 }
 
-// The second Sobol dimension of an index, bits reversed: bit j is the sum modulo 2 of the index bits k with C(k, j) odd,
-// which by Lucas' theorem are the k that contain j as a set of bits. Five steps sum over all supersets.
-INLINE UInt second_dimension_reversed(UInt x) {
-    x ^= (x >> 1) & 0x55555555u;
-    x ^= (x >> 2) & 0x33333333u;
-    x ^= (x >> 4) & 0x0f0f0f0fu;
-    x ^= (x >> 8) & 0x00ff00ffu;
-    return x ^ ((x >> 16) & 0x0000ffffu);
+// The second Sobol dimension of an index, bits reversed. Its matrix is Pascal's triangle modulo 2, where entry (j, k) is
+// odd if and only if k is a bitwise subset of j (Lucas 1878): bit k is the parity of the index bits at supersets of k,
+// a butterfly of five steps.
+INLINE UInt sobol_second_reversed(UInt index) {
+    index ^= (index >> 1) & (UInt)0x55555555u;
+    index ^= (index >> 2) & (UInt)0x33333333u;
+    index ^= (index >> 4) & (UInt)0x0f0f0f0fu;
+    index ^= (index >> 8) & (UInt)0x00ff00ffu;
+    return index ^ (index >> 16);
 }
 
+// The upper 24 bits as a multiple of 2^-24 in [0, 1).
+INLINE Float unit_float(UInt bits) { return convert_Float(as_Int(bits >> 8)) * 5.9604644775390625e-8f; }
+
+// The sample of one path: `index` counts the samples of its pixel, below 2^31.
 INLINE SampleId sample_id(UInt x, UInt y, UInt index, uint seed) {
     SampleId id;
-    id.pixel_hash = mix_bits(x ^ mix_bits(y ^ mix_bits((UInt)(seed + 0x9e3779b9u))));
+    id.pixel_hash = mix_bits(mix_bits(mix_bits((UInt)seed) + x) + y);
     id.reversed_index = reverse_bits(index);
     return id;
 }
 
-// To [0, 1): multiples of 2^-24, so that 1 is never reached.
-INLINE Float unit_float(UInt bits) { return convert_Float(as_Int(bits >> 8)) * 0x1p-24f; }
-
+// Two values of the 2D pair number `pair`, in [0, 1).
 INLINE void sample_2d(SampleId id, UInt pair, Float *u1, Float *u2) {
-    UInt shuffle = mix_bits(id.pixel_hash ^ (pair * 0x9e3779b9u));
-    UInt seed1 = mix_bits(shuffle ^ 0x68bc21ebu), seed2 = mix_bits(shuffle ^ 0x02e5be93u);
-    UInt index = reverse_bits(permute_upwards(id.reversed_index, shuffle));
-    // The first dimension of an index is its reversal: reversed, the index itself.
-    *u1 = unit_float(reverse_bits(permute_upwards(index, seed1)));
-    *u2 = unit_float(reverse_bits(permute_upwards(second_dimension_reversed(index), seed2)));
+    UInt shuffle_seed = mix_bits(id.pixel_hash + pair * (UInt)0x9e3779b9u); // golden ratio: spreads small counts
+    UInt seed1 = next_seed(shuffle_seed);
+    UInt seed2 = next_seed(seed1);
+    UInt index = reverse_bits(scramble_reversed(id.reversed_index, shuffle_seed));
+    // The first Sobol dimension is the index with its bits reversed: reversed, the index itself.
+    *u1 = unit_float(reverse_bits(scramble_reversed(index, seed1)));
+    *u2 = unit_float(reverse_bits(scramble_reversed(sobol_second_reversed(index), seed2)));
 }
 
 #endif

@@ -1,49 +1,72 @@
-// From the unit square to the shapes that are sampled. All warps are continuous enough to keep the stratification of
-// their samples.
+// Maps from the unit square to the domains that are sampled; each keeps areas, so that stratification survives.
 #ifndef WAVELOBE_SAMPLING_WARPS_H
 #define WAVELOBE_SAMPLING_WARPS_H
 
 #include "core/math.h"
 #include "core/vector.h"
+#include "shared/filter_table.h"
 
-// The unit disk, area preserving. Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square".
-INLINE void sample_concentric_disk(Float u1, Float u2, Float *x, Float *y) {
-    Float a = madd(u1, (Float)2.0f, (Float)-1.0f), b = madd(u2, (Float)2.0f, (Float)-1.0f);
-    Int first = fabs(a) > fabs(b);
-    Float radius = SELECT(first, a, b), other = SELECT(first, b, a);
-    // Eighth turns, measured from the x axis in two of the quadrants and from the y axis in the others.
-    Float turn = 0.125f * SELECT(radius == 0.0f, ZERO, other / SELECT(radius == 0.0f, ONE, radius));
-    Float s, c;
-    lane_sin_cos_turns(turn, &s, &c);
-    *x = radius * SELECT(first, c, s);
-    *y = radius * SELECT(first, s, c);
-}
-
-// Density cos / pi over solid angle about +z. Malley's method.
-INLINE Vec3 sample_cosine_hemisphere(Float u1, Float u2) {
+typedef struct {
     Float x, y;
-    sample_concentric_disk(u1, u2, &x, &y);
-    Float z2 = 1.0f - madd(x, x, y * y);
-    return vec3(x, y, sqrt(GREATER(z2, ZERO)));
+} Vec2;
+
+// Evenly over the unit disk; *radius is the distance from the centre. Shirley and Chiu 1997, "A Low Distortion Map
+// Between Disk and Square": concentric squares become circles.
+INLINE Vec2 square_to_disk_radius(Float u1, Float u2, Float *radius) {
+    Float a = madd(u1, (Float)2.0f, (Float)-1.0f);
+    Float b = madd(u2, (Float)2.0f, (Float)-1.0f);
+    Int flat = fabs(a) > fabs(b);
+    Float r = SELECT(flat, a, b);
+    Float ratio = SELECT(flat, b, a) / r;
+    ratio = SELECT(r == 0.0f, ZERO, ratio);
+    Float s, c;
+    sin_cos_of_quarters(ratio * 0.5f, &s, &c);
+    Vec2 p = {r * SELECT(flat, c, s), r * SELECT(flat, s, c)};
+    *radius = fabs(r);
+    return p;
 }
 
-// Density 1 / (4 pi).
-INLINE Vec3 sample_uniform_sphere(Float u1, Float u2) {
-    Float z = madd(u1, (Float)-2.0f, ONE);
-    Float r = 2.0f * sqrt(u1 * (1.0f - u1)); // without the cancellation of 1 - z^2
+INLINE Vec2 square_to_disk(Float u1, Float u2) {
+    Float radius;
+    return square_to_disk_radius(u1, u2, &radius);
+}
+
+// About +z, with density cos / pi: a point of the disk lifted to the hemisphere (Malley's method).
+INLINE Vec3 sample_cosine_hemisphere(Float u1, Float u2) {
+    Float r;
+    Vec2 d = square_to_disk_radius(u1, u2, &r);
+    return vec3(d.x, d.y, sqrt((ONE - r) * (ONE + r)));
+}
+
+// Density of sample_cosine_hemisphere, 1 / sr.
+INLINE Float cosine_hemisphere_pdf(Float cos_theta) { return GREATER(cos_theta, ZERO) * INV_PI; }
+
+// Evenly over the unit sphere, density 1 / (4 pi): height is even (Archimedes), so is azimuth.
+INLINE Vec3 square_to_uniform_sphere(Float u1, Float u2) {
+    Float r = 2.0f * sqrt(u1 * (ONE - u1));
     Float s, c;
     lane_sin_cos_turns(u2, &s, &c);
-    return vec3(r * c, r * s, z);
+    return vec3(r * c, r * s, madd(u1, (Float)-2.0f, ONE));
 }
 
-// Inverse distribution of a pixel filter, tabulated at equal steps of probability by host/tables/filter_table.h; linear
-// in between. Returns the offset from the pixel's centre.
-#define FILTER_STEPS 1024u
+// Evenly over a triangle: barycentric coordinates of its second and third vertex, x + y <= 1. Heitz 2019, "A
+// Low-Distortion Map Between Triangle and Square".
+INLINE Vec2 square_to_triangle(Float u1, Float u2) {
+    Float half_lesser = 0.5f * LESSER(u1, u2);
+    Int above = u2 > u1;
+    Vec2 b = {SELECT(above, half_lesser, u1 - half_lesser), SELECT(above, u2 - half_lesser, half_lesser)};
+    return b;
+}
+
+// An offset from the pixel centre, in pixels, with the density of the reconstruction filter along one axis: the
+// filter's inverse distribution function, linear between the entries of the table (host/tables/filter_table.h).
+// Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling".
 INLINE Float sample_filter(global const float *table, Float u) {
-    Float at = u * (float)FILTER_STEPS;
-    UInt i = as_UInt(convert_Int(at));
-    Float low = gather(table, i), high = gather(table + 1, i);
-    return madd(high - low, at - convert_Float(as_Int(i)), low);
+    Float position = u * (float)FILTER_TABLE_CELLS;
+    Int cell = convert_Int(position);
+    Float low = gather(table, as_UInt(cell));
+    Float high = gather(table + 1, as_UInt(cell));
+    return madd(position - convert_Float(cell), high - low, low);
 }
 
 #endif

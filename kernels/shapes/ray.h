@@ -18,4 +18,9 @@ typedef struct {
     uint primitive; // HIT_NONE, a triangle slot, or HIT_ANALYTIC | index
 } Hit;
 
+// Rays that are not numbers hit nothing. The box test must not see them: which of its comparisons a NaN passes is chance.
+INLINE int is_finite_ray(const Ray *r) {
+    return (r->ox - r->ox) + (r->oy - r->oy) + (r->oz - r->oz) + (r->dx - r->dx) + (r->dy - r->dy) + (r->dz - r->dz) == 0.0f;
+}
+
 #endif

@@ -154,7 +154,7 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
     Hit hit = {r->limit, 0.0f, 0.0f, HIT_NONE};
-    if (UNLIKELY(!(r->limit > 0.0f))) return hit; // also a limit that is not a number
+    if (UNLIKELY(!(r->limit > 0.0f) || !is_finite_ray(r))) return hit; // also a limit that is not a number
     // Every hit has t > 0, so that the sentinel's distance of 0 is below any limit and it is always popped last.
     ulong stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
@@ -200,6 +200,7 @@ INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
 INLINE uint trace_any(Geometry g, const Ray *r) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
+    if (UNLIKELY(!(r->limit > 0.0f) || !is_finite_ray(r))) return 0u;
     uint stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u, current = 0u;

@@ -157,7 +157,8 @@ TEST(Fresnel, DielectricMatchesDoublePrecision) {
         if (f.reflectance == 1.0 && f.transmittance == 0.0) continue;
         // Snell: tangential parts, unit length.
         const double sin_t_squared = (1.0 - c * c) * f.eta_ti * f.eta_ti;
-        ASSERT_NEAR(sin_t_squared + f.cos_t * f.cos_t, 1.0, 16 * ulp) << c << " " << eta;
+        // Leaving a dense medium, the squared cosine is a difference of products as large as the squared index.
+        ASSERT_NEAR(sin_t_squared + f.cos_t * f.cos_t, 1.0, (8.0 + 4.0 * f.eta_ti * f.eta_ti) * ulp) << c << " " << eta;
         ASSERT_LE(f.cos_t * c, 0.0);
     }
 }

@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(All, Soups,
                                          Soup{"small", 800, 0.1F, 1.0F, {}}, Soup{"tiny_scale", 200, 0.3F, 1e-6F, {}},
                                          Soup{"huge_scale", 200, 0.3F, 1e6F, {}},
                                          Soup{"far_away", 200, 0.3F, 1.0F, {1000.0F, -3000.0F, 500.0F}}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& soup) { return soup.param.name; });
 
 TEST(Traversal, Slivers) {
     Generator random(3);
@@ -206,25 +206,30 @@ TEST(Traversal, DegenerateTrianglesAreMissed) {
 // Rays that are not numbers end as misses, without walking the whole scene: at some 30 microseconds a walk these would
 // take minutes.
 TEST(Traversal, RaysThatAreNotNumbersMiss) {
-    const Triangles triangles = triangle_soup(100000, 0.02F, 1.0F, {}, 10);
-    const Bvh bvh = hierarchy(triangles, BvhQuality::fast);
+    const Bvh bvh = hierarchy(triangle_soup(100000, 0.02F, 1.0F, {}, 10), BvhQuality::fast);
     std::vector<TestRay> rays;
     Generator random(11);
     for (int i = 0; i < 200000; ++i) {
         TestRay ray{uniform_in_cube(random, 1.0F), uniform_direction(random)};
         const float bad = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);
         const int where = i % 7;
-        if (where < 3) ray.origin[where] = bad;
-        else if (where < 6) ray.direction[where - 3] = bad;
-        else ray = {glm::vec3{nan}, glm::vec3{nan}};
+        if (where < 3) {
+            ray.origin[where] = bad;
+        } else if (where < 6) {
+            ray.direction[where - 3] = bad;
+        } else {
+            ray = {glm::vec3{nan}, glm::vec3{nan}};
+        }
         rays.push_back(ray);
     }
     for (const float limit : {nan, 0.0F, -0.0F, -1.0F, -infinity}) rays.push_back({{0, 0, 0}, {0, 0, 1}, limit});
     rays.push_back({{0, 0, 0}, {0, 0, 0}});
-    const std::vector<TestHit> hits = probe().trace(bvh, rays);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_EQ(hits[i].slot, HIT_NONE) << "ray " << i;
-        ASSERT_EQ(hits[i].any, 0U) << "ray " << i;
+    for (const Bvh& scene : {bvh, hierarchy({})}) {
+        const std::vector<TestHit> hits = probe().trace(scene, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(hits[i].slot, HIT_NONE) << "ray " << i;
+            ASSERT_EQ(hits[i].any, 0U) << "ray " << i;
+        }
     }
 }
 

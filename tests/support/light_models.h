@@ -183,7 +183,7 @@ inline std::vector<LightModel> sphere_models(LightBuffers& buffers) {
             // Only its near side is ever seen.
             m.hits = [all = m.hits](const glm::dvec3& o, const glm::dvec3& d) {
                 std::vector<LightHit> hits = all(o, d);
-                hits.resize(std::min<std::size_t>(hits.size(), 1));
+                if (hits.size() > 1) hits.pop_back();
                 return hits;
             };
             m.label = "outward, size " + std::to_string(size) + " distance " + std::to_string(distance);

@@ -1,0 +1,8 @@
+// Size of the table by which film positions are drawn.
+#ifndef WAVELOBE_SHARED_FILTER_TABLE_H
+#define WAVELOBE_SHARED_FILTER_TABLE_H
+
+// Cells of equal probability; the table holds their ends, one more.
+#define FILTER_TABLE_CELLS 1024u
+
+#endif
