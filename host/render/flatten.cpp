@@ -187,7 +187,7 @@ private:
 
     void add_emitter(const Emitter& emitter, double radius);
     void add(const ConstantEmitter& e, double power);
-    void add(const EnvironmentMap& e, double power);
+    void add_environment_map(const EnvironmentMap& e, double radius);
     void add(const PointEmitter& e, double power);
     void add(const SpotEmitter& e, double power);
     void add(const DirectionalEmitter& e, double power);
@@ -283,9 +283,11 @@ void Flattener::add(const ConstantEmitter& e, double power) {
     add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}), power);
 }
 
-void Flattener::add(const EnvironmentMap& e, double power) {
+void Flattener::add_environment_map(const EnvironmentMap& e, double radius) {
     const Bitmap image = with_three_rows(e.image);
-    const EnvironmentTable table = build_environment_table(image);
+    EnvironmentTable table = build_environment_table(image, "envmap");
+    const double power = environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius);
+    if (!(power > 0.0)) return;
     Environment environment{};
     environment.to_world = affine(e.to_world);
     environment.to_object = affine(glm::mat4(glm::inverse(glm::dmat4(e.to_world))));
@@ -297,8 +299,8 @@ void Flattener::add(const EnvironmentMap& e, double power) {
     environment.light = static_cast<std::uint32_t>(out_.lights.size());
     out_.environment.push_back(environment);
     out_.environment_texels = image.rgb;
-    out_.environment_alias = table.alias;
-    out_.environment_density = table.density;
+    out_.environment_alias = std::move(table.alias);
+    out_.environment_density = std::move(table.density);
     add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
 }
 
@@ -324,9 +326,17 @@ void Flattener::add(const DirectionalEmitter& e, double power) {
 }
 
 void Flattener::add_emitter(const Emitter& emitter, double radius) {
+    if (const auto* map = std::get_if<EnvironmentMap>(&emitter)) {
+        add_environment_map(*map, radius);
+        return;
+    }
     const double power = emitter_power(emitter, radius);
     if (!(power > 0.0)) return;  // black: nothing it could add
-    std::visit([this, power](const auto& e) { add(e, power); }, emitter);
+    std::visit(
+        [this, power](const auto& e) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e, power);
+        },
+        emitter);
 }
 
 void Flattener::set_parameters() {

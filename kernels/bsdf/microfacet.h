@@ -160,8 +160,8 @@ INLINE Vec3 sample_visible_beckmann(Microfacets d, Vec3 wi, Float u1, Float u2) 
     }
     // The last step is short: erf_inverse by its Taylor polynomial.
     Float change = (0.5f * SQRT_PI_F) * (LESSER(GREATER(y, lowest), highest) - previous) / exponential;
-    slope = madd(change, madd(change, madd(change, madd(slope * slope, (Float)(4.0f / 3.0f), (Float)(1.0f / 3.0f)), slope), ONE),
-                 slope);
+    Float third = madd(slope * slope, (Float)(4.0f / 3.0f), (Float)(1.0f / 3.0f));
+    slope = madd(change, madd(change, madd(change, third, slope), ONE), slope);
     Float across = lane_erf_inverse(LESSER(GREATER(madd((Float)2.0f, u2, (Float)-1.0f), lowest), -lowest));
 
     // Back to the direction of the viewer; straight above any will do.

@@ -121,7 +121,7 @@ INLINE Rgb texture_rgb(TextureBuffers b, UInt i, Float u, Float v) {
     return value;
 }
 
-// A scalar: red. A checkerboard changes its two values over, as Mitsuba's does where it is asked for a scalar.
+// A scalar: red. (Readers put into it what their format means by a texture's scalar.)
 INLINE Float texture_float(TextureBuffers b, UInt i, Float u, Float v) {
     UInt kind = as_UInt(texture_field(b, i, kind));
     TextureCoordinates t = texture_coordinates(b, i, u, v);
@@ -129,7 +129,7 @@ INLINE Float texture_float(TextureBuffers b, UInt i, Float u, Float v) {
     Float value = ZERO;
     if (any_lane(bitmap)) value = filter_texels(b, texel_quad(b, i, kind, t), 0u);
     if (any_lane(!bitmap)) {
-        Float checker = gather((global const float *)b.textures, checker_offset(i, !first_checker(t)));
+        Float checker = gather((global const float *)b.textures, checker_offset(i, first_checker(t)));
         value = SELECT(bitmap, value, checker);
     }
     return value;

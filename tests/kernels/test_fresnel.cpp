@@ -44,7 +44,8 @@ std::vector<Fresnel> dielectric(const std::vector<float>& cosines, const std::ve
 
 Fresnel dielectric(float cosine, float eta) { return dielectric(std::vector{cosine}, std::vector{eta})[0]; }
 
-std::vector<double> conductor(const std::vector<float>& cosines, const std::vector<float>& etas, const std::vector<float>& ks) {
+std::vector<double> conductor(const std::vector<float>& cosines, const std::vector<float>& etas,
+                              const std::vector<float>& ks) {
     static Probe probe(R"(
         #include "bsdf/fresnel.h"
         kernel void run(global const float *cos_i, global const float *eta, global const float *k, global float *out) {
@@ -188,7 +189,8 @@ TEST(Fresnel, ConductorMatchesDoublePrecision) {
         const double k = ks[i];
         const double expected = reference(c, eta, k);
         const double step = 1.0 + 2 * ulp;
-        const double slack = std::abs(reference(c * step, eta, k) - expected) + std::abs(reference(c, eta * step, k) - expected) +
+        const double slack = std::abs(reference(c * step, eta, k) - expected) +
+                             std::abs(reference(c, eta * step, k) - expected) +
                              std::abs(reference(c, eta, k * step) - expected);
         ASSERT_NEAR(results[i], expected, 32 * ulp * expected + 4.0 * slack) << c << " " << eta << " " << k;
     }

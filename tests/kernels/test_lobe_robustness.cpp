@@ -17,7 +17,9 @@ std::vector<Material> random_materials(Random& random, std::size_t n) {
     std::vector<Material> materials;
     for (std::size_t i = 0; i < n; ++i) {
         Material m = white_material();
-        const auto pick = [&](const auto& list) { return list[static_cast<std::size_t>(random.uniform() * static_cast<float>(std::size(list)))]; };
+        const auto pick = [&](const auto& list) {
+            return list[static_cast<std::size_t>(random.uniform() * static_cast<float>(std::size(list)))];
+        };
         const auto colour = [&] {
             return i % 5 == 0 ? Packed3{0.0F, 1.0F, 1.0F} : Packed3{random.uniform(), random.uniform(), random.uniform()};
         };

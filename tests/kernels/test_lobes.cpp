@@ -118,7 +118,8 @@ TEST_P(Lobes, SamplesFollowTheDensityAndConserveEnergy) {
                                           << counts.back() << ", expected " << expected.back();
 
         const double estimate = sum / sample_count;
-        const double deviation = std::sqrt(std::max(sum_of_squares / sample_count - estimate * estimate, 0.0) / sample_count);
+        const double variance = std::max(sum_of_squares / sample_count - estimate * estimate, 0.0);
+        const double deviation = std::sqrt(variance / sample_count);
         // Quadrature error and rounding of the weights, besides the sampling error.
         const double excess = std::max(std::abs(estimate - albedo) - 1e-7 * static_cast<double>(c.grid.size()) - 1e-6, 0.0);
         EXPECT_TRUE(excess == 0.0 || normal_p_value(excess / deviation) > threshold)

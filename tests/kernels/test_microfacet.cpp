@@ -59,10 +59,11 @@ private:
     Probe probe_{R"(
         #define HAS_TEXTURES 0
         #include "bsdf/microfacet.h"
-        #define LOAD3(first) vec3(load(in + (first) * n + i), load(in + ((first) + 1) * n + i), load(in + ((first) + 2) * n + i))
+        #define LOAD(channel) load(in + (channel) * n + i)
+        #define LOAD3(first) vec3(LOAD(first), LOAD((first) + 1), LOAD((first) + 2))
         kernel void run(global const float *in, global float *out, uint n) {
             size_t i = get_global_id(0) * LANES;
-            Microfacets d = {load(in + i), load(in + n + i), load(in + 2 * n + i) != 0.0f};
+            Microfacets d = {LOAD(0), LOAD(1), LOAD(2) != 0.0f};
             Vec3 wi = LOAD3(3), wo = LOAD3(6), m = LOAD3(9);
             Masking g = microfacet_masking(d, wi, wo);
             Vec3 normal = sample_visible_normal(d, wi, wo.x, wo.y);
@@ -116,7 +117,8 @@ TEST(Microfacet, MaskingMatchesDoublePrecision) {
     Random random(1);
     std::vector<MicrofacetProbe::Item> items;
     for (int i = 0; i < 50000; ++i) {
-        const Surface s{"", random.log_between(1e-4F, 1.0F), random.log_between(1e-4F, 1.0F), i % 2 ? MATERIAL_BECKMANN : 0U};
+        const Surface s{"", random.log_between(1e-4F, 1.0F), random.log_between(1e-4F, 1.0F),
+                        i % 2 ? MATERIAL_BECKMANN : 0U};
         const auto height = [&] { return i % 4 < 2 ? random.uniform() : random.log_between(1e-8F, 1.0F); };
         items.push_back({s, direction_at_height(height(), 6.0 * random.uniform()),
                          direction_at_height(height(), 6.0 * random.uniform()), {0, 0, 1}});

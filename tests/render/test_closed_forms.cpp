@@ -163,7 +163,7 @@ TEST(FloorUnder, Point) {
     scene.emitters.emplace_back(PointEmitter{position, radiance});
     const double d2 = glm::dot(glm::dvec3(position), glm::dvec3(position));
     const double factor = static_cast<double>(position.y) / std::pow(d2, 1.5);
-    expect_every_pixel(render(scene, 4).image, radiance_of_irradiance(glm::dvec3(radiance) * factor));
+    expect_every_pixel(render(scene, 16).image, radiance_of_irradiance(glm::dvec3(radiance) * factor));
 }
 
 // Within the beam, and where the intensity falls linearly in the angle.
@@ -184,7 +184,7 @@ TEST(FloorUnder, Spot) {
         const double falloff = angle < 10.0 ? 1.0 : (25.0 - angle) / (25.0 - 10.0);
         const double d2 = glm::dot(position, position);
         const double factor = falloff * position.y / std::pow(d2, 1.5);
-        const Image image = render(scene, 4).image;
+        const Image image = render(scene, 16).image;
         // An angle's rounding is that of turns, over the width of the ramp.
         const double tolerance = path_rounding * (angle < 10.0 ? 1.0 : 180.0 / (25.0 - angle));
         const glm::dvec3 expected = radiance_of_irradiance(glm::dvec3(radiance) * factor);
@@ -199,7 +199,7 @@ TEST(FloorUnder, Directional) {
     const glm::vec3 direction = glm::normalize(glm::vec3{0.5F, -0.8F, 0.3F});
     scene.emitters.emplace_back(DirectionalEmitter{direction, radiance});
     const double cosine = -static_cast<double>(direction.y);
-    expect_every_pixel(render(scene, 4).image, radiance_of_irradiance(glm::dvec3(radiance) * cosine));
+    expect_every_pixel(render(scene, 16).image, radiance_of_irradiance(glm::dvec3(radiance) * cosine));
 }
 
 TEST(FloorUnder, ConstantEnvironment) {
@@ -257,7 +257,7 @@ TEST(IntegratingSphere, PointInTheMiddle) {
         scene.emitters.emplace_back(PointEmitter{{0, 0, 0}, radiance});
         const glm::dvec3 once = radiance_of_irradiance(glm::dvec3(radiance) / 4.0);
         if (direct) {
-            expect_every_pixel(render(scene, 4).image, once);
+            expect_every_pixel(render(scene, 16).image, once);
         } else {
             expect_mean(render(scene, 64).image, once / (1.0 - glm::dvec3(albedo)));
         }

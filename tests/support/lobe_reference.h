@@ -37,7 +37,7 @@ inline double reference_fresnel_dielectric(double cos_i, double eta) {
     return reference_fresnel(std::abs(cos_i), n);
 }
 
-inline glm::dvec3 reference_fresnel_conductor(const Material& m, double cos_i) {
+inline glm::dvec3 reference_fresnel_conductor(const ::Material& m, double cos_i) {
     return {reference_fresnel(cos_i, {m.eta.x, m.k.x}), reference_fresnel(cos_i, {m.eta.y, m.k.y}),
             reference_fresnel(cos_i, {m.eta.z, m.k.z})};
 }
@@ -45,7 +45,7 @@ inline glm::dvec3 reference_fresnel_conductor(const Material& m, double cos_i) {
 // ---- microfacets ----------------------------------------------------------------------------------------
 
 // Density of normals m, Walter et al. 2007 with anisotropy.
-inline double reference_density(const Material& material, const glm::dvec3& m) {
+inline double reference_density(const ::Material& material, const glm::dvec3& m) {
     const double au = material.alpha_u.value;
     const double av = material.alpha_v.value;
     if (m.z <= 0.0) return 0.0;
@@ -56,7 +56,7 @@ inline double reference_density(const Material& material, const glm::dvec3& m) {
 }
 
 // Smith masking: exact, or Beckmann's by the rational fit of Walter et al.
-inline double reference_masking(const Material& material, const glm::dvec3& v, bool exact) {
+inline double reference_masking(const ::Material& material, const glm::dvec3& v, bool exact) {
     const double slope = std::hypot(material.alpha_u.value * v.x, material.alpha_v.value * v.y) / std::abs(v.z);
     if (!(material.flags & MATERIAL_BECKMANN)) return 2.0 / (1.0 + std::sqrt(1.0 + slope * slope));
     const double a = 1.0 / slope;
@@ -72,7 +72,7 @@ struct ReferenceValue {
     double pdf = 0.0;
 };
 
-inline ReferenceValue reference_rough_conductor(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline ReferenceValue reference_rough_conductor(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     const glm::dvec3 h = glm::normalize(wi + wo);
     const double d = reference_density(m, h);
@@ -82,7 +82,7 @@ inline ReferenceValue reference_rough_conductor(const Material& m, const glm::dv
             d * reference_masking(m, wi, true) / (4.0 * wi.z)};
 }
 
-inline ReferenceValue reference_rough_dielectric(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline ReferenceValue reference_rough_dielectric(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z == 0.0 || wo.z == 0.0) return {};
     const double eta = wi.z > 0.0 ? m.eta.x : 1.0 / m.eta.x;  // behind the surface over before it
     const bool reflects = wi.z * wo.z > 0.0;
@@ -106,7 +106,7 @@ inline ReferenceValue reference_rough_dielectric(const Material& m, const glm::d
             (1.0 - fresnel) * visible * jacobian};
 }
 
-inline ReferenceValue reference_phong(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline ReferenceValue reference_phong(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     const glm::dvec3 chord = wo - glm::dvec3{-wi.x, -wi.y, wi.z};
     const double one_minus_cos = 0.5 * glm::dot(chord, chord);
@@ -116,12 +116,12 @@ inline ReferenceValue reference_phong(const Material& m, const glm::dvec3& wi, c
     return {to_double(m.specular.value) * ((n + 2.0) / (2.0 * pi) * power * wo.z), (n + 1.0) / (2.0 * pi) * power};
 }
 
-inline ReferenceValue reference_lambert(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline ReferenceValue reference_lambert(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     return {to_double(m.diffuse.value) * (wo.z / pi), wo.z / pi};
 }
 
-inline ReferenceValue reference_plastic_base(const Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline ReferenceValue reference_plastic_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     const double eta = m.eta.x;
     const glm::dvec3 diffuse = to_double(m.diffuse.value);
@@ -132,7 +132,7 @@ inline ReferenceValue reference_plastic_base(const Material& m, const glm::dvec3
             wo.z / pi};
 }
 
-using ReferenceEval = std::function<ReferenceValue(const Material&, const glm::dvec3&, const glm::dvec3&)>;
+using ReferenceEval = std::function<ReferenceValue(const ::Material&, const glm::dvec3&, const glm::dvec3&)>;
 
 // By the name of the lobe.
 inline const std::map<std::string, ReferenceEval>& reference_evals() {
@@ -156,12 +156,12 @@ struct DeltaBranch {
 
 inline glm::dvec3 mirrored(const glm::dvec3& wi) { return {-wi.x, -wi.y, wi.z}; }
 
-inline std::vector<DeltaBranch> reference_mirror(const Material& m, const glm::dvec3& wi) {
+inline std::vector<DeltaBranch> reference_mirror(const ::Material& m, const glm::dvec3& wi) {
     const glm::dvec3 f = wi.z > 0.0 ? reference_fresnel_conductor(m, wi.z) : glm::dvec3{0.0};
     return {{1.0, mirrored(wi), to_double(m.specular.value) * f, 1.0}};
 }
 
-inline std::vector<DeltaBranch> reference_dielectric(const Material& m, const glm::dvec3& wi) {
+inline std::vector<DeltaBranch> reference_dielectric(const ::Material& m, const glm::dvec3& wi) {
     const double f = reference_fresnel_dielectric(wi.z, m.eta.x);
     const double eta = wi.z >= 0.0 ? m.eta.x : 1.0 / m.eta.x;
     const double cos_t = std::sqrt(std::max(1.0 - (1.0 - wi.z * wi.z) / (eta * eta), 0.0));
@@ -172,7 +172,7 @@ inline std::vector<DeltaBranch> reference_dielectric(const Material& m, const gl
              eta}};
 }
 
-inline std::vector<DeltaBranch> reference_thin_dielectric(const Material& m, const glm::dvec3& wi) {
+inline std::vector<DeltaBranch> reference_thin_dielectric(const ::Material& m, const glm::dvec3& wi) {
     const double r = reference_fresnel_dielectric(std::abs(wi.z), m.eta.x);
     double pane = r;  // r + t r t + t r^3 t + ..., summed
     for (double bounce = (1.0 - r) * (1.0 - r) * r; bounce > 1e-18 && r < 1.0; bounce *= r * r) pane += bounce;
@@ -180,12 +180,12 @@ inline std::vector<DeltaBranch> reference_thin_dielectric(const Material& m, con
             {1.0 - pane, -wi, to_double(m.transmission.value), 1.0}};
 }
 
-inline std::vector<DeltaBranch> reference_plastic_coat(const Material& m, const glm::dvec3& wi) {
+inline std::vector<DeltaBranch> reference_plastic_coat(const ::Material& m, const glm::dvec3& wi) {
     const double f = wi.z > 0.0 ? reference_fresnel_dielectric(wi.z, m.eta.x) : 0.0;
     return {{1.0, mirrored(wi), to_double(m.specular.value) * f, 1.0}};
 }
 
-using ReferenceDelta = std::function<std::vector<DeltaBranch>(const Material&, const glm::dvec3&)>;
+using ReferenceDelta = std::function<std::vector<DeltaBranch>(const ::Material&, const glm::dvec3&)>;
 
 inline const std::map<std::string, ReferenceDelta>& reference_deltas() {
     static const std::map<std::string, ReferenceDelta> deltas{

@@ -31,11 +31,11 @@ inline void look_at(Scene& scene, const glm::vec3& origin, const glm::vec3& targ
     scene.camera.fov_x_degrees = fov_degrees;
 }
 
-// All pixels see the neighbourhood of one point, so small that nothing changes over it (1e-3 degrees).
+// All pixels see one point: at 1e-5 degrees they differ by no more than a few roundings of its coordinates.
 inline void look_at_point(Scene& scene, const glm::vec3& origin, const glm::vec3& target) {
     const glm::vec3 forward = glm::normalize(target - origin);
     const glm::vec3 up = std::abs(forward.y) > 0.9F ? glm::vec3{0, 0, 1} : glm::vec3{0, 1, 0};
-    look_at(scene, origin, target, up, 1e-3F);
+    look_at(scene, origin, target, up, 1e-5F);
 }
 
 inline int add_material(Scene& scene, MaterialModel model) {

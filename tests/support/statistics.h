@@ -211,7 +211,8 @@ inline std::vector<double> integrate_cells(const SphereGrid& grid, const BatchFu
             const double area = (c.height1 - c.height0) * (c.phi1 - c.phi0);
             for (std::size_t i = 0; i < 16; ++i) {
                 for (std::size_t k = 0; k < channels; ++k) {
-                    integrals[j * channels + k] += area * weights[i / 4] * weights[i % 4] * values[(j * 16 + i) * channels + k];
+                    const double value = values[(j * 16 + i) * channels + k];
+                    integrals[j * channels + k] += area * weights[i / 4] * weights[i % 4] * value;
                 }
             }
         }
