@@ -66,7 +66,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TRANSMISSION", f.transmission);
-    out.define("HAS_BACK_SIDES", f.back_sides);
+    out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
@@ -161,7 +161,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(analytic, "analytic_shapes");
     add(anisotropy, "anisotropy");
     add(transmission, "transmission");
-    add(back_sides, "back_sides");
+    add(unlike_sides, "unlike_sides");
     add(lobe_choice, "lobe_choice");
     add(mixture, "mixture");
     add(ggx, "ggx");

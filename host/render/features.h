@@ -35,7 +35,7 @@ struct FeatureSet {
     bool analytic = false;
     bool anisotropy = false;
     bool transmission = false;
-    bool back_sides = false;   // some surface shows a material behind
+    bool unlike_sides = false; // some surface is black behind, or of another material
     bool lobe_choice = false;  // the class of lobes depends on more than the shape
     bool mixture = false;      // some material is both glossy and diffuse
     bool ggx = false;

@@ -94,7 +94,7 @@ private:
         const std::uint32_t back = classes(s.back_material);
         s.flags = front | back;
         FeatureSet& f = out_.features;
-        f.back_sides = f.back_sides || s.back_material != WAVELOBE_NONE;
+        f.unlike_sides = f.unlike_sides || s.back_material != s.front_material;
         // A black side ends a path in any queue; two sides of different classes must be told apart before.
         f.lobe_choice = f.lobe_choice || (front != 0 && back != 0 && front != back);
         if (emits(shape)) {

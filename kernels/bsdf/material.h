@@ -127,6 +127,18 @@ INLINE Vec3 sample_diffuse_lobe(const SmoothLobes *l, Vec3 wi, Float u1, Float u
 }
 #undef LOBE_SAMPLE
 
+// The relative index a direction crosses into: 1 on the side it came from.
+INLINE Float crossed_index(MaterialInput in, Vec3 wi, Vec3 wo) {
+#if HAS_TRANSMISSION
+    Int crosses = wi.z * wo.z < 0.0f;
+    if (any_lane(crosses)) {
+        Float eta = load_constant(in, eta.x);
+        return SELECT(crosses, SELECT(wi.z > 0.0f, eta, 1.0f / eta), ONE);
+    }
+#endif
+    return ONE;
+}
+
 // ---- delta lobes: followed, never evaluated ---------------------------------------------------------------
 
 // A material has at most one delta lobe.

@@ -237,11 +237,11 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     out->wi = to_local(out->frame, back_along);
     Int behind = out->wi.z < 0.0f;
     UInt front = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
-#if HAS_BACK_SIDES
+#if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);
     out->material = SELECT(behind, back, front);
 #else
-    out->material = SELECT(behind, (UInt)WAVELOBE_NONE, front);
+    out->material = front;
 #endif
 #if HAS_TRANSMISSION
     UInt known = SELECT(out->material == (UInt)WAVELOBE_NONE, (UInt)0u, out->material);

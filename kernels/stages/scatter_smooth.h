@@ -90,7 +90,7 @@ INLINE void scatter_smooth(uint lobe_class, Block block, Queue paths, SurfaceVie
         Int alive = path.live & (value.pdf > 0.0f);
         Rgb throughput = mul(path.throughput, scale(value.f_cos, 1.0f / SELECT(alive, value.pdf, ONE)));
         alive &= max_component(throughput) > 0.0f;
-        Float eta = PATH_ETA_OF(path);
+        Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
         Vec3 direction = normalize3(to_world(surface.frame, wo));
         appended = append_rays(rays, appended, &path, &surface, direction, throughput, value.pdf, eta, alive);

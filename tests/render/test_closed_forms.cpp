@@ -57,8 +57,9 @@ TEST(Furnace, CylinderAndDisks) {
     const int material = add_diffuse(scene, albedo);
     const auto add = [&](AnalyticShape::Kind kind, float bottom, float height, bool flip) {
         const glm::mat4 to_world = glm::scale(glm::translate(glm::mat4(1.0F), {0, 0, bottom}), glm::vec3(1, 1, height));
-        scene.shapes.push_back({AnalyticShape{kind, to_world}, {material, -1}, {}, flip, "wall"});
-        make_emitter(scene.shapes.back(), radiance);
+        Shape& wall = add_shape(scene, AnalyticShape{kind, to_world}, material, "wall");
+        wall.flip_normals = flip;
+        make_emitter(wall, radiance);
     };
     add(AnalyticShape::Kind::cylinder, -1.5F, 3.0F, true);
     add(AnalyticShape::Kind::disk, -1.5F, 1.0F, false);

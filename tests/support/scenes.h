@@ -45,6 +45,14 @@ inline int add_material(Scene& scene, MaterialModel model) {
 
 inline int add_diffuse(Scene& scene, const Rgb& albedo) { return add_material(scene, Diffuse{constant(albedo)}); }
 
+inline Shape& add_shape(Scene& scene, std::variant<TriangleMesh, AnalyticShape> geometry, int material, const char* name) {
+    Shape& shape = scene.shapes.emplace_back();
+    shape.geometry = std::move(geometry);
+    shape.material.front = material;
+    shape.name = name;
+    return shape;
+}
+
 // A parallelogram with normal along edge1 x edge2.
 inline Shape& add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& edge1, const glm::vec3& edge2, int material) {
     TriangleMesh mesh;
@@ -52,8 +60,7 @@ inline Shape& add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& e
     mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     mesh.parallelogram = true;
-    scene.shapes.push_back({std::move(mesh), {material, -1}, {}, false, "quad"});
-    return scene.shapes.back();
+    return add_shape(scene, std::move(mesh), material, "quad");
 }
 
 // The square [-half, half]^2 of the plane y = 0, seen from above.
@@ -65,14 +72,12 @@ inline Shape& add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b,
     TriangleMesh mesh;
     mesh.positions = {a, b, c};
     mesh.triangles = {{0, 1, 2}};
-    scene.shapes.push_back({std::move(mesh), {material, -1}, {}, false, "triangle"});
-    return scene.shapes.back();
+    return add_shape(scene, std::move(mesh), material, "triangle");
 }
 
 inline Shape& add_sphere(Scene& scene, const glm::vec3& center, float radius, int material) {
     const glm::mat4 to_world = glm::scale(glm::translate(glm::mat4(1.0F), center), glm::vec3(radius));
-    scene.shapes.push_back({AnalyticShape{AnalyticShape::Kind::sphere, to_world}, {material, -1}, {}, false, "sphere"});
-    return scene.shapes.back();
+    return add_shape(scene, AnalyticShape{AnalyticShape::Kind::sphere, to_world}, material, "sphere");
 }
 
 // A disk whose normal is -y, facing the floor.
@@ -81,8 +86,7 @@ inline Shape& add_disk_facing_down(Scene& scene, const glm::vec3& center, float 
     to_world[1] = {0, 0, radius, 0};
     to_world[2] = {0, -radius, 0, 0};
     to_world[3] = glm::vec4(center, 1);
-    scene.shapes.push_back({AnalyticShape{AnalyticShape::Kind::disk, to_world}, {material, -1}, {}, false, "disk"});
-    return scene.shapes.back();
+    return add_shape(scene, AnalyticShape{AnalyticShape::Kind::disk, to_world}, material, "disk");
 }
 
 inline void make_emitter(Shape& shape, const Rgb& radiance) { shape.emitter = AreaEmitter{constant(radiance)}; }

@@ -1,0 +1,131 @@
+// The same picture, bit for bit, however the work is divided.
+//
+// Threads are fixed when a process first touches OpenCL: each picture is rendered in a child process, and the parent never
+// opens a device.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "host/scene_files.h"
+#include "render/render.h"
+#include "support/many_features.h"
+
+namespace wavelobe::test {
+namespace {
+
+// More tiles than one thread has blocks for, none of them whole at the right and lower edge; more samples than a block
+// makes at once.
+constexpr int width = 67;
+constexpr int height = 45;
+constexpr int samples = 20;
+
+struct Division {
+    int threads = 2;
+    int block_slots = 0;
+    int lanes = 16;
+    std::uint32_t seed = 7;
+};
+
+void write_picture(const Scene& scene, const Division& division, const std::string& path) {
+    const Device device({.threads = division.threads, .name = {}});
+    RenderSettings settings;
+    settings.samples_per_pixel = samples;
+    settings.seed = division.seed;
+    settings.block_slots = division.block_slots;
+    settings.lanes = division.lanes;
+    Renderer renderer(device, scene, settings);
+    if (!renderer.render() || renderer.stats().nan_samples != 0) throw std::runtime_error("not all samples are there");
+    const Image image = renderer.image();
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(image.rgb.data()), static_cast<std::streamsize>(image.rgb.size() * sizeof(float)));
+}
+
+std::vector<float> picture(const Scene& scene, const Division& division) {
+    const SceneFolder folder;
+    const std::string path = folder.path("picture");
+    const pid_t child = fork();
+    if (child == 0) {
+        int code = 0;
+        try {
+            write_picture(scene, division, path);
+        } catch (const std::exception& error) {
+            std::fprintf(stderr, "%s\n", error.what());
+            code = 1;
+        }
+        _exit(code);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    std::vector<float> rgb(static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0)) / sizeof(float));
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(rgb.data()), static_cast<std::streamsize>(rgb.size() * sizeof(float)));
+    return rgb;
+}
+
+const std::vector<float>& reference() {
+    static const std::vector<float> rgb = picture(many_features_scene(width, height), {});
+    return rgb;
+}
+
+std::size_t differing_pixels(const std::vector<float>& a, const std::vector<float>& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
+        if (!std::equal(a.begin() + static_cast<std::ptrdiff_t>(i), a.begin() + static_cast<std::ptrdiff_t>(i + 3),
+                        b.begin() + static_cast<std::ptrdiff_t>(i))) {
+            ++count;
+        }
+    }
+    return count;
+}
+
+void expect_same(const Division& division) {
+    const std::vector<float> rgb = picture(many_features_scene(width, height), division);
+    ASSERT_EQ(rgb.size(), std::size_t{3} * width * height);
+    ASSERT_EQ(rgb.size(), reference().size());
+    EXPECT_EQ(differing_pixels(rgb, reference()), 0U);
+}
+
+TEST(Determinism, PictureIsNotBlack) {
+    double sum = 0.0;
+    for (const float value : reference()) sum += static_cast<double>(value);
+    EXPECT_GT(sum / static_cast<double>(reference().size()), 0.05);
+}
+
+TEST(Determinism, OneThread) { expect_same({.threads = 1}); }
+// Both at once: every combination is a program of its own to compile.
+TEST(Determinism, EightLanesAndSmallBlocks) { expect_same({.block_slots = 64, .lanes = 8}); }
+TEST(Determinism, OneLaneAndLargeBlocks) { expect_same({.block_slots = 1024, .lanes = 1}); }
+
+// A crop window is a part of the whole picture.
+TEST(Determinism, CropWindow) {
+    Scene scene = many_features_scene(width, height);
+    constexpr int x = 11;
+    constexpr int y = 7;
+    scene.film.crop_x = x;
+    scene.film.crop_y = y;
+    scene.film.crop_width = 37;
+    scene.film.crop_height = 21;
+    const std::vector<float> crop = picture(scene, {});
+    ASSERT_EQ(crop.size(), std::size_t{3} * 37 * 21);
+    std::vector<float> part;
+    for (int row = 0; row < scene.film.crop_height; ++row) {
+        const auto first = reference().begin() + 3 * ((y + row) * width + x);
+        part.insert(part.end(), first, first + 3 * scene.film.crop_width);
+    }
+    EXPECT_EQ(differing_pixels(crop, part), 0U);
+}
+
+TEST(Determinism, AnotherSeedIsAnotherPicture) {
+    const std::vector<float> rgb = picture(many_features_scene(width, height), {.seed = 8});
+    ASSERT_EQ(rgb.size(), reference().size());
+    // A pixel that nothing random reaches may be the same; most are not.
+    EXPECT_GT(differing_pixels(rgb, reference()), std::size_t{width} * height / 2);
+}
+
+}  // namespace
+}  // namespace wavelobe::test
