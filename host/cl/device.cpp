@@ -122,7 +122,8 @@ Device::Device(const DeviceOptions& options) {
     if (id_ == nullptr) {
         std::ostringstream message;
         if (candidates.empty()) {
-            message << "no OpenCL CPU device found; install one with: apt-get install pocl-opencl-icd";
+            message << "no OpenCL CPU device found; install one (apt-get install pocl-opencl-icd) and see that its cache "
+                    << kernel_cache_folder() << " can be written";
         } else {
             message << "no OpenCL CPU device named \"" << options.name << "\"; there are:";
             for (const Candidate& candidate : candidates) {

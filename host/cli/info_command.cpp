@@ -57,8 +57,12 @@ std::string describe(const Integrator& integrator) {
                        integrator.hide_emitters ? ", emitters hidden" : "");
 }
 
-int run(const SceneArguments& arguments) {
+int run(const SceneArguments& arguments, bool program) {
     const Scene scene = arguments.read();
+    if (program) {
+        fmt::print("{}", scene_program(scene));
+        return exit_ok;
+    }
     print_warnings(scene);
     const SceneSummary summary = summarize(scene);
     std::map<std::string, int> materials;
@@ -88,7 +92,9 @@ void add_info_command(CLI::App& program, Chosen& chosen) {
     CLI::App* command = program.add_subcommand("info", "Say what a scene holds and needs, without rendering");
     auto arguments = std::make_shared<SceneArguments>();
     arguments->add_to(*command);
-    command->callback([arguments, &chosen] { chosen = [arguments] { return run(*arguments); }; });
+    auto source = std::make_shared<bool>(false);
+    command->add_flag("--program", *source, "Print the scene's OpenCL program instead, as one source");
+    command->callback([arguments, source, &chosen] { chosen = [arguments, source] { return run(*arguments, *source); }; });
 }
 
 }  // namespace wavelobe

@@ -187,11 +187,10 @@ std::vector<std::string> FeatureSet::stages() const {
     return out;
 }
 
-std::string program_source(const FeatureSet& features, int lanes, int block_slots, int block_samples) {
+std::string program_source(const FeatureSet& features, int lanes, int block_slots) {
     SourceWriter out;
     out.define("LANES", lanes);
     out.define_unsigned("BLOCK_SLOTS", block_slots);
-    out.define_unsigned("BLOCK_SAMPLES", block_samples);
     write_macros(out, features);
     write_lobes(out, features);
     write_lights(out, features);
@@ -199,7 +198,7 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
     return out.text();
 }
 
-std::size_t block_words(const FeatureSet& features, int block_slots, int block_samples) {
+std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
     constexpr std::size_t fields_without_origin = RAY_FIELDS - 3;
     const std::size_t traced = features.analytic ? RAY_FIELDS : fields_without_origin;
@@ -210,7 +209,7 @@ std::size_t block_words(const FeatureSet& features, int block_slots, int block_s
         if (features.has_lobe_class(c)) ++queues;
     }
     return stride * (RAY_FIELDS + queues * traced + SHADOW_FIELDS) +
-           std::size_t{3} * TILE_PIXELS * static_cast<std::size_t>(block_samples);
+           std::size_t{3} * TILE_PIXELS * BLOCK_SAMPLES;
 }
 
 }  // namespace wavelobe

@@ -54,10 +54,10 @@ struct FeatureSet {
 };
 
 // The source of the scene's program: feature macros, the headers of its lobes and lights, and its stages.
-std::string program_source(const FeatureSet& features, int lanes, int block_slots, int block_samples);
+std::string program_source(const FeatureSet& features, int lanes, int block_slots);
 
 // Floats a block takes in the buffer of blocks (BLOCK_WORDS of kernels/core/block.h).
-std::size_t block_words(const FeatureSet& features, int block_slots, int block_samples);
+std::size_t block_words(const FeatureSet& features, int block_slots);
 
 // Class of each lobe (LOBE_CLASS_x) and its name.
 std::uint32_t lobe_class(std::uint32_t lobe);

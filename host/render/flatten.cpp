@@ -2,33 +2,13 @@
 
 #include <cmath>
 
+#include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "scene/fault.h"
-#include "tables/alias_table.h"
-#include "tables/environment_table.h"
 #include "tables/filter_table.h"
-#include "tables/light_power.h"
 
 namespace wavelobe {
 namespace {
-
-Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-
-Affine affine(const glm::mat4& m) {
-    Affine a{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) a.m[4 * row + column] = m[column][row];
-    }
-    return a;
-}
-
-// A light record with nothing set but its kind.
-Light light_of(LightIndex kind, const TexturedRgb& radiance) {
-    Light light{};
-    light.kind = kind;
-    light.radiance = radiance;
-    return light;
-}
 
 Bounds bounds_of_scene(const DeviceScene& scene) {
     Bounds b;
@@ -44,7 +24,7 @@ Bounds bounds_of_scene(const DeviceScene& scene) {
 
 class Flattener {
 public:
-    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_) {}
+    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), lights_(materials_, out_) {}
 
     DeviceScene run() {
         for (const Shape& shape : scene_.shapes) {
@@ -56,8 +36,8 @@ public:
         }
         const Bounds bounds = bounds_of_scene(out_);
         const double radius = out_.primitive_shapes.empty() ? 1.0 : 0.5 * glm::length(glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
-        for (const Emitter& emitter : scene_.emitters) add_emitter(emitter, radius);
-        finish_lights();
+        for (const Emitter& emitter : scene_.emitters) lights_.add_emitter(emitter, radius);
+        lights_.finish();
         set_parameters();
         out_.filter_table = build_filter_table(scene_.film.filter);
         finish_features();
@@ -132,7 +112,10 @@ private:
                 if (!mesh.uvs.empty()) append(out_.uvs, mesh.uvs[vertex]);
             }
         }
-        if (emits(shape)) add_mesh_lights(shape, mesh, s);
+        if (emits(shape)) {
+            lights_.add_mesh(*shape.emitter, mesh);
+            if (mesh.parallelogram) s.triangles_per_light = 2;
+        }
         out_.shapes.push_back(s);
     }
 
@@ -145,73 +128,14 @@ private:
         return static_cast<std::uint32_t>(value);
     }
 
-    void add_mesh_lights(const Shape& shape, const TriangleMesh& mesh, DeviceShape& s) {
-        const TexturedRgb radiance = materials_.rgb(shape.emitter->radiance);
-        if (mesh.parallelogram) {
-            s.triangles_per_light = 2;
-            add_planar_light(shape, mesh, LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
-            return;
-        }
-        for (const glm::uvec3& t : mesh.triangles) add_planar_light(shape, mesh, LIGHT_TRIANGLE, radiance, t);
-    }
-
-    void add_planar_light(const Shape& shape, const TriangleMesh& mesh, LightIndex kind, const TexturedRgb& radiance,
-                          const glm::uvec3& t) {
-        Light light = light_of(kind, radiance);
-        const glm::vec3 p = mesh.positions[t.x];
-        const glm::vec3 e1 = mesh.positions[t.y] - p;
-        const glm::vec3 e2 = mesh.positions[t.z] - p;
-        const glm::dvec3 cross = glm::cross(glm::dvec3(e1), glm::dvec3(e2));
-        const double area = glm::length(cross) * (kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
-        light.position = packed(p);
-        light.edge1 = packed(e1);
-        light.edge2 = packed(e2);
-        light.normal = packed(glm::vec3(glm::normalize(cross)));
-        light.inverse_area = static_cast<float>(1.0 / area);
-        const glm::vec2 barycentric[3] = {{0, 0}, {1, 0}, {0, 1}};
-        for (int i = 0; i < 3; ++i) {
-            const glm::vec2 uv = mesh.uvs.empty() ? barycentric[i] : mesh.uvs[t[i]];
-            light.uv[2 * i] = uv.x;
-            light.uv[2 * i + 1] = uv.y;
-        }
-        add_light(light, area_power(*shape.emitter, area));
-    }
-
     void add_analytic(const Shape& shape, const AnalyticShape& analytic);
-
-    void add_light(const Light& light, double power) {
-        out_.lights.push_back(light);
-        out_.features.light_kinds |= 1U << light.kind;
-        powers_.push_back(power);
-    }
-
-    void add_emitter(const Emitter& emitter, double radius);
-    void add(const ConstantEmitter& e, double power);
-    void add_environment_map(const EnvironmentMap& e, double radius);
-    void add(const PointEmitter& e, double power);
-    void add(const SpotEmitter& e, double power);
-    void add(const DirectionalEmitter& e, double power);
-
-    // Probabilities and the alias table, by power; alike if no light has any.
-    void finish_lights() {
-        out_.features.light_count = static_cast<int>(out_.lights.size());
-        if (out_.lights.empty()) return;
-        const std::vector<AliasEntry> alias = build_alias_table(powers_);
-        double sum = 0.0;
-        for (const double power : powers_) sum += power;
-        for (std::size_t i = 0; i < out_.lights.size(); ++i) {
-            out_.lights[i].alias = alias[i];
-            const double p = sum > 0.0 ? powers_[i] / sum : 1.0 / static_cast<double>(powers_.size());
-            out_.lights[i].selection_probability = static_cast<float>(p);
-        }
-    }
 
     void set_parameters();
 
     const Scene& scene_;
     DeviceScene out_;
     MaterialFlattener materials_;
-    std::vector<double> powers_;
+    LightFlattener lights_;
 };
 
 // Bounds of the unit shapes under an affine map, a few roundings wider than exact.
@@ -263,80 +187,12 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     a.area = static_cast<float>(area);
     a.radius = static_cast<float>(glm::length(glm::dvec3(analytic.to_world[0])));
     if (emits(shape)) {
-        Light light = light_of(lights[kind], materials_.rgb(shape.emitter->radiance));
-        light.analytic = static_cast<std::uint32_t>(out_.analytics.size());
-        light.inverse_area = static_cast<float>(1.0 / area);
-        add_light(light, area_power(*shape.emitter, area));
+        lights_.add_analytic(*shape.emitter, lights[kind], static_cast<std::uint32_t>(out_.analytics.size()), area);
     }
     out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
     out_.shapes.push_back(s);
     out_.analytics.push_back(a);
     out_.analytic_bounds.push_back(analytic_bounds(analytic));
-}
-
-void Flattener::add(const ConstantEmitter& e, double power) {
-    Environment environment{};
-    environment.radiance = packed(e.radiance);
-    environment.to_world = environment.to_object = affine(glm::mat4(1.0F));
-    environment.light = static_cast<std::uint32_t>(out_.lights.size());
-    out_.environment.push_back(environment);
-    add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}), power);
-}
-
-void Flattener::add_environment_map(const EnvironmentMap& e, double radius) {
-    const Bitmap image = with_three_rows(e.image);
-    EnvironmentTable table = build_environment_table(image, "envmap");
-    const double power = environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius);
-    if (!(power > 0.0)) return;
-    Environment environment{};
-    environment.to_world = affine(e.to_world);
-    environment.to_object = affine(glm::mat4(glm::inverse(glm::dmat4(e.to_world))));
-    environment.width = static_cast<std::uint32_t>(image.width);
-    environment.height = static_cast<std::uint32_t>(image.height);
-    environment.cell_columns = table.cell_columns;
-    environment.cell_rows = table.cell_rows;
-    environment.radiance = {e.scale, e.scale, e.scale};
-    environment.light = static_cast<std::uint32_t>(out_.lights.size());
-    out_.environment.push_back(environment);
-    out_.environment_texels = image.rgb;
-    out_.environment_alias = std::move(table.alias);
-    out_.environment_density = std::move(table.density);
-    add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
-}
-
-void Flattener::add(const PointEmitter& e, double power) {
-    Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
-    light.position = packed(e.position);
-    add_light(light, power);
-}
-
-void Flattener::add(const SpotEmitter& e, double power) {
-    Light light = light_of(LIGHT_SPOT, {packed(e.intensity), WAVELOBE_NONE});
-    light.position = packed(glm::vec3(e.to_world[3]));
-    light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
-    light.cos_cutoff = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.cutoff_degrees))));
-    light.cos_beam = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.beam_width_degrees))));
-    add_light(light, power);
-}
-
-void Flattener::add(const DirectionalEmitter& e, double power) {
-    Light light = light_of(LIGHT_DIRECTIONAL, {packed(e.irradiance), WAVELOBE_NONE});
-    light.edge1 = packed(e.direction);
-    add_light(light, power);
-}
-
-void Flattener::add_emitter(const Emitter& emitter, double radius) {
-    if (const auto* map = std::get_if<EnvironmentMap>(&emitter)) {
-        add_environment_map(*map, radius);
-        return;
-    }
-    const double power = emitter_power(emitter, radius);
-    if (!(power > 0.0)) return;  // black: nothing it could add
-    std::visit(
-        [this, power](const auto& e) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e, power);
-        },
-        emitter);
 }
 
 void Flattener::set_parameters() {

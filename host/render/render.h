@@ -100,4 +100,7 @@ private:
 
 SceneSummary summarize(const Scene& scene);
 
+// The OpenCL program of a scene as one source without includes, to read, to lint, or to give to other tools.
+std::string scene_program(const Scene& scene, const RenderSettings& settings = {});
+
 }  // namespace wavelobe

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cl/cache_lock.h"
+#include "cl/kernel_source.h"
 #include "cl/program.h"
 #include "render/device_buffers.h"
 #include "render/flatten.h"
@@ -25,7 +26,14 @@ constexpr std::size_t blocks_per_thread = 8;
 constexpr std::size_t named_nonfinite_samples = 8;
 
 std::uint32_t samples_per_block(int samples_per_pixel) {
-    return std::min(static_cast<std::uint32_t>(samples_per_pixel), BLOCK_MAX_SAMPLES);
+    return std::min(static_cast<std::uint32_t>(samples_per_pixel), BLOCK_SAMPLES);
+}
+
+// Entries for a hierarchy of `depth` levels: seven siblings a level and the sentinel. In steps, so that most scenes share
+// their compiled kernels.
+int traversal_stack(int depth) {
+    constexpr int step = 64;
+    return (7 * depth + 1 + step - 1) / step * step;
 }
 
 }  // namespace
@@ -72,13 +80,13 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       buffers(device) {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
+    scene_data.features.bvh_stack = traversal_stack(bvh.depth);
     stats.setup_parts["bvh"] = seconds_since(start);
     // Seven pushed a level and the sentinel; the usual size serves nearly every scene with one and the same program.
     scene_data.features.bvh_stack = std::max(scene_data.features.bvh_stack, 7 * bvh.depth + 1);
 
-    const int samples = static_cast<int>(samples_per_block(settings.samples_per_pixel));
     start = Clock::now();
-    buffers.upload(scene_data, bvh, block_count, block_words(scene_data.features, slots, samples));
+    buffers.upload(scene_data, bvh, block_count, block_words(scene_data.features, slots));
     headers = buffers.view<BlockHeader>("headers");
     stats.device_bytes = buffers.total_bytes();
     stats.features = scene_data.features.names();
@@ -86,7 +94,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
 
     start = Clock::now();
     const CacheLock lock(kernel_cache_folder());
-    const Program program(device, program_source(scene_data.features, settings.lanes, slots, samples), "scene.cl");
+    const Program program(device, program_source(scene_data.features, settings.lanes, slots), "scene.cl");
     for (const std::string& stage : scene_data.features.stages()) {
         Kernel& kernel = kernels.emplace(stage, Kernel(program, stage.c_str())).first->second;
         kernel.bind(buffers.table());
@@ -218,6 +226,12 @@ Image Renderer::image() const {
         }
     }
     return image;
+}
+
+std::string scene_program(const Scene& scene, const RenderSettings& settings) {
+    const FeatureSet features = flatten_scene(scene).features;
+    const int slots = settings.block_slots > 0 ? settings.block_slots : default_block_slots;
+    return flatten_includes(program_source(features, settings.lanes, slots), "scene.cl");
 }
 
 SceneSummary summarize(const Scene& scene) {

@@ -9,7 +9,7 @@
 
 #define TILE_WIDTH 16u
 #define TILE_PIXELS 256u
-#define BLOCK_MAX_SAMPLES 16u // of each pixel: radiance of a block's paths stays in the core's cache
+#define BLOCK_SAMPLES 16u // of each pixel at the most: radiance of a block's paths stays in the core's cache
 // Pixels of a tile go in 4 x 4 squares, so that 16 neighbouring ids are neighbours in the picture too: the bits of an id
 // are yyxx of the square, then yyxx inside it.
 #define TILE_X(id) (((id) & 3u) | (((id) >> 2) & 12u))

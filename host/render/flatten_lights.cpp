@@ -1,0 +1,154 @@
+#include "render/flatten_lights.h"
+
+#include <cmath>
+
+#include "tables/alias_table.h"
+#include "tables/environment_table.h"
+#include "tables/light_power.h"
+
+namespace wavelobe {
+namespace {
+
+Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+
+// A light record with nothing set but its kind.
+Light light_of(LightIndex kind, const TexturedRgb& radiance) {
+    Light light{};
+    light.kind = kind;
+    light.radiance = radiance;
+    return light;
+}
+
+}  // namespace
+
+Affine affine(const glm::mat4& m) {
+    Affine a{};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) a.m[4 * row + column] = m[column][row];
+    }
+    return a;
+}
+
+void LightFlattener::add_light(const Light& light, double power) {
+    out_.lights.push_back(light);
+    out_.features.light_kinds |= 1U << light.kind;
+    powers_.push_back(power);
+}
+
+void LightFlattener::add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh) {
+    const TexturedRgb radiance = materials_.rgb(emitter.radiance);
+    if (mesh.parallelogram) {
+        add_planar(emitter, mesh, LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
+        return;
+    }
+    for (const glm::uvec3& t : mesh.triangles) add_planar(emitter, mesh, LIGHT_TRIANGLE, radiance, t);
+}
+
+void LightFlattener::add_planar(const AreaEmitter& emitter, const TriangleMesh& mesh, LightIndex kind,
+                                const TexturedRgb& radiance, const glm::uvec3& t) {
+    Light light = light_of(kind, radiance);
+    const glm::vec3 p = mesh.positions[t.x];
+    const glm::vec3 e1 = mesh.positions[t.y] - p;
+    const glm::vec3 e2 = mesh.positions[t.z] - p;
+    const glm::dvec3 cross = glm::cross(glm::dvec3(e1), glm::dvec3(e2));
+    const double area = glm::length(cross) * (kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
+    light.position = packed(p);
+    light.edge1 = packed(e1);
+    light.edge2 = packed(e2);
+    light.normal = packed(glm::vec3(glm::normalize(cross)));
+    light.inverse_area = static_cast<float>(1.0 / area);
+    const glm::vec2 barycentric[3] = {{0, 0}, {1, 0}, {0, 1}};
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec2 uv = mesh.uvs.empty() ? barycentric[i] : mesh.uvs[t[i]];
+        light.uv[2 * i] = uv.x;
+        light.uv[2 * i + 1] = uv.y;
+    }
+    add_light(light, area_power(emitter, area));
+}
+
+void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area) {
+    Light light = light_of(kind, materials_.rgb(emitter.radiance));
+    light.analytic = analytic;
+    light.inverse_area = static_cast<float>(1.0 / area);
+    add_light(light, area_power(emitter, area));
+}
+
+void LightFlattener::finish() {
+    out_.features.light_count = static_cast<int>(out_.lights.size());
+    if (out_.lights.empty()) return;
+    const std::vector<AliasEntry> alias = build_alias_table(powers_);
+    double sum = 0.0;
+    for (const double power : powers_) sum += power;
+    for (std::size_t i = 0; i < out_.lights.size(); ++i) {
+        out_.lights[i].alias = alias[i];
+        const double p = sum > 0.0 ? powers_[i] / sum : 1.0 / static_cast<double>(powers_.size());
+        out_.lights[i].selection_probability = static_cast<float>(p);
+    }
+}
+
+void LightFlattener::add(const ConstantEmitter& e, double power) {
+    Environment environment{};
+    environment.radiance = packed(e.radiance);
+    environment.to_world = environment.to_object = affine(glm::mat4(1.0F));
+    environment.light = static_cast<std::uint32_t>(out_.lights.size());
+    out_.environment.push_back(environment);
+    add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}), power);
+}
+
+void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius) {
+    const Bitmap image = with_three_rows(e.image);
+    EnvironmentTable table = build_environment_table(image, "envmap");
+    const double power = environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius);
+    if (!(power > 0.0)) return;
+    Environment environment{};
+    environment.to_world = affine(e.to_world);
+    environment.to_object = affine(glm::mat4(glm::inverse(glm::dmat4(e.to_world))));
+    environment.width = static_cast<std::uint32_t>(image.width);
+    environment.height = static_cast<std::uint32_t>(image.height);
+    environment.cell_columns = table.cell_columns;
+    environment.cell_rows = table.cell_rows;
+    environment.radiance = {e.scale, e.scale, e.scale};
+    environment.light = static_cast<std::uint32_t>(out_.lights.size());
+    out_.environment.push_back(environment);
+    out_.environment_texels = image.rgb;
+    out_.environment_alias = std::move(table.alias);
+    out_.environment_density = std::move(table.density);
+    add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
+}
+
+void LightFlattener::add(const PointEmitter& e, double power) {
+    Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
+    light.position = packed(e.position);
+    add_light(light, power);
+}
+
+void LightFlattener::add(const SpotEmitter& e, double power) {
+    Light light = light_of(LIGHT_SPOT, {packed(e.intensity), WAVELOBE_NONE});
+    light.position = packed(glm::vec3(e.to_world[3]));
+    light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
+    light.cos_cutoff = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.cutoff_degrees))));
+    light.cos_beam = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.beam_width_degrees))));
+    add_light(light, power);
+}
+
+void LightFlattener::add(const DirectionalEmitter& e, double power) {
+    Light light = light_of(LIGHT_DIRECTIONAL, {packed(e.irradiance), WAVELOBE_NONE});
+    light.edge1 = packed(e.direction);
+    add_light(light, power);
+}
+
+void LightFlattener::add_emitter(const Emitter& emitter, double radius) {
+    if (const auto* map = std::get_if<EnvironmentMap>(&emitter)) {
+        add_environment_map(*map, radius);
+        return;
+    }
+    const double power = emitter_power(emitter, radius);
+    if (!(power > 0.0)) return;  // black: nothing it could add
+    std::visit(
+        [this, power](const auto& e) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e, power);
+        },
+        emitter);
+}
+
+}  // namespace wavelobe
