@@ -46,9 +46,11 @@ std::uint64_t DeviceBuffers::total_bytes() const {
     return sum;
 }
 
-void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, std::size_t block_count,
+void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few, std::size_t block_count,
                            std::size_t words_per_block) {
-    add("bvh_nodes", bvh.nodes);
+    if (!scene.features.few_triangles) add("bvh_nodes", bvh.nodes);
+    add("few_vertices", few.vertices);
+    add("few_triangles", few.triangles);
     add("triangle_blocks", bvh.blocks);
     add("analytic_order", bvh.analytic_order);
     // An empty scene still has kernels that name these.

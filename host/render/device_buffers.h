@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "accel/few_triangles.h"
 #include "cl/program.h"
 #include "render/flatten.h"
 
@@ -18,7 +19,8 @@ class DeviceBuffers {
 public:
     explicit DeviceBuffers(const Device& device) : device_(device) {}
 
-    void upload(const DeviceScene& scene, const Bvh& bvh, std::size_t block_count, std::size_t words_per_block);
+    void upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few, std::size_t block_count,
+                std::size_t words_per_block);
 
     const BufferTable& table() const { return table_; }
     std::uint64_t total_bytes() const;

@@ -80,7 +80,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ENVIRONMENT", f.has_environment());
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
-    out.define_unsigned("BVH_STACK", f.bvh_stack);
+    out.define("HAS_FEW_TRIANGLES", f.few_triangles);
+    if (!f.few_triangles) out.define_unsigned("BVH_STACK", f.bvh_stack);
 }
 
 void write_lobes(SourceWriter& out, const FeatureSet& f) {
@@ -167,6 +168,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(few_triangles, "few_triangles");
     return out;
 }
 

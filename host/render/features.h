@@ -41,7 +41,8 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
-    int bvh_stack = 64;  // entries of the traversal stack
+    bool few_triangles = false;  // no hierarchy: every triangle is tested
+    int bvh_stack = 64;          // entries of the traversal stack
 
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;

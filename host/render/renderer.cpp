@@ -81,12 +81,16 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
+    const FewTriangleSet few = find_few_triangles(bvh);
+    scene_data.features.few_triangles = !few.triangles.empty();
+    scene_data.parameters.few_triangle_count = static_cast<std::uint32_t>(few.triangles.size());
+    scene_data.parameters.few_vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
     stats.setup_parts["bvh"] = seconds_since(start);
     // Seven pushed a level and the sentinel; the usual size serves nearly every scene with one and the same program.
     scene_data.features.bvh_stack = std::max(scene_data.features.bvh_stack, 7 * bvh.depth + 1);
 
     start = Clock::now();
-    buffers.upload(scene_data, bvh, block_count, block_words(scene_data.features, slots));
+    buffers.upload(scene_data, bvh, few, block_count, block_words(scene_data.features, slots));
     headers = buffers.view<BlockHeader>("headers");
     stats.device_bytes = buffers.total_bytes();
     stats.features = scene_data.features.names();

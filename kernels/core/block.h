@@ -75,6 +75,8 @@ INLINE Vec3 read_vec3(Queue q, uint field, uint i) {
     return vec3(read_field(q, field, i), read_field(q, field + 1u, i), read_field(q, field + 2u, i));
 }
 
+INLINE void write_field(Queue q, uint field, uint i, Float v) { store(q.fields + (size_t)field * QUEUE_STRIDE + i, v); }
+
 // One slot, for stages that go ray by ray.
 INLINE float slot_float(Queue q, uint field, uint i) { return q.fields[(size_t)field * QUEUE_STRIDE + i]; }
 INLINE uint slot_uint(Queue q, uint field, uint i) { return as_uint(slot_float(q, field, i)); }

@@ -196,36 +196,42 @@ INLINE Float product_error(Float a, Float b, Float p) {
 #endif
 }
 
-// log2(x) as the sum of the result and *rest, to 2^-31 of its size: log m = 2 artanh s, s = (m - 1) / (m + 1).
+// log2(x) as the sum of the result and *rest, to 2^-34 of its size or of 1: m = c (1 + s) / (1 - s) with c one of three
+// points of [sqrt(1/2), sqrt(2)), log m = log c + 2 artanh s.
 INLINE Float log2_extended(Float x, Float *rest) {
     Float e;
     Float m = split_exponent(x, &e);
-    Float f = m - ONE;
-    Float d = m + ONE;
-    Float d_rest = m - (d - ONE);
+    Int low = m < 0.890625f, high = m > 1.125f;
+    Float c = SELECT(low, (Float)0.79296875f, SELECT(high, (Float)1.26171875f, ONE));
+    // log2(c) in two parts, the first a multiple of 2^-16 so that its sum with e is exact.
+    e += SELECT(low, (Float)-0.3346710205078125f, SELECT(high, (Float)0.33538818359375f, ZERO));
+    Float log_c_rest = SELECT(low, (Float)6.93769299e-06f, SELECT(high, (Float)2.17110017e-06f, ZERO));
+    Float d = m + c;
+    Float d_rest = m - (d - c);
+    Float f = m - c;
     Float inverse = 1.0f / d;
     Float s = f * inverse;
     Float sd = s * d;
     Float s_rest = ((f - sd) - product_error(s, d, sd) - s * d_rest) * inverse;
     Float z = s * s;
-    Float p = horner((Float)0.242798656f, z, 0.284987688f);
-    p = horner(p, z, 0.400009722f);
-    p = horner(p, z, 0.666666627f);
-    // ln m = 2 s + tail, tail below a hundredth of it; then times log2(e) in two parts, then plus e.
+    Float p = horner((Float)0.29055649f, z, 0.399980396f);
+    p = horner(p, z, 0.666666687f);
+    // ln(m / c) = 2 s + tail; times log2(e) in two parts; plus e.
     Float s2 = s + s;
     Float tail = madd(p, z * s, s_rest + s_rest);
-    Float high = s2 * LOG2_E_F;
-    Float low = product_error(s2, (Float)LOG2_E_F, high) + madd(tail, (Float)LOG2_E_F, s2 * LOG2_E_REST_F);
-    Float sum = e + high;
-    Float high_in_sum = sum - e;
-    low += (e - (sum - high_in_sum)) + (high - high_in_sum);
-    Float y = sum + low;
-    *rest = low - (y - sum);
+    Float product = s2 * LOG2_E_F;
+    Float error = product_error(s2, (Float)LOG2_E_F, product);
+    error = madd(tail, (Float)LOG2_E_F, madd(s2, (Float)LOG2_E_REST_F, error)) + log_c_rest;
+    Float sum = e + product;
+    Float product_in_sum = sum - e;
+    error += (e - (sum - product_in_sum)) + (product - product_in_sum);
+    Float y = sum + error;
+    *rest = error - (y - sum);
     return finish_logarithm(x, y);
 }
 
-// base^exponent, base >= 0 (below: NaN), any exponent: 2.5 ulp. x^0 = 1^y = 1 for all x and y, 0^y = 0 and
-// 0^-y = infinity for y > 0. Denormal bases count as zero.
+// base^exponent, base >= 0 (below: NaN), any exponent: 1.5 ulp. x^0 = 1^y = 1 for all x and y, 0^y = 0 and
+// 0^-y = infinity for y > 0. Denormal bases count as zero. Overflows a little early, from (1 - 2^-18) 2^128 on.
 INLINE Float lane_pow(Float base, Float exponent) {
     Float rest;
     Float log_base = log2_extended(base, &rest);
@@ -293,7 +299,7 @@ INLINE Float lane_atan2(Float y, Float x) {
     angle = SELECT(steep, HALF_PI_F - (angle - HALF_PI_REST_F), angle);
     Float obtuse = 2.0f * HALF_PI_F - (angle - 2.0f * HALF_PI_REST_F);
     angle = SELECT(as_Int(x) < (Int)0, obtuse, angle);
-    return SELECT(angle == angle, copy_sign(angle, y), angle);
+    return SELECT((x == x) & (y == y), copy_sign(angle, y), LANE_NAN);
 }
 
 #include "core/erf.h"

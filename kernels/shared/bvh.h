@@ -27,6 +27,17 @@ struct TriangleBlock {
 };
 WAVELOBE_CHECK_SIZE(TriangleBlock, 320);
 
+// Scenes of few triangles have no hierarchy: LANES rays at a time are tested against all of them. Corners are indices of
+// distinct vertices.
+struct FewTriangle {
+    Uint32 corner[3];
+    Uint32 slot; // what a hit names
+};
+WAVELOBE_CHECK_SIZE(FewTriangle, 16);
+
+#define FEW_TRIANGLES_MAX 96u
+#define FEW_VERTICES_MAX 128u
+
 // What a hit names: block * 8 + lane of a triangle, or HIT_ANALYTIC | index of an analytic shape.
 #define HIT_NONE 0xffffffffu
 #define HIT_ANALYTIC 0x80000000u

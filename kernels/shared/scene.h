@@ -35,8 +35,9 @@ struct RenderParameters {
     Uint32 rr_depth;  // Russian roulette from this many vertices on
     Uint32 light_count;
     Uint32 triangle_count;
+    Uint32 few_triangle_count, few_vertex_count; // of scenes without a hierarchy
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 108);
+WAVELOBE_CHECK_SIZE(RenderParameters, 116);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

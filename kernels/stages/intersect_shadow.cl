@@ -1,11 +1,21 @@
 // Traces the shadow queue; a light that is seen adds its contribution to the path's radiance.
-#include "core/block.h"
 #include "shapes/geometry_parameters.h"
 
-kernel void intersect_shadow(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    Geometry geometry = GEOMETRY_VIEW;
-    Queue shadow = QUEUE(block, SHADOW);
+#if HAS_FEW_TRIANGLES
+// LANES rays at a time against everything. A path has one shadow ray at the most, so no two lanes share an id.
+INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
+    uint n = *shadow.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        Int live = lanes_below(i, n);
+        Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), read_vec3(shadow, SHADOW_DIRECTION, i),
+                                 read_field(shadow, SHADOW_T, i), live);
+        UInt id = SELECT(live, read_uint(shadow, SHADOW_ID, i), (UInt)0u);
+        add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), lane_bits(live & !blocked));
+    }
+}
+#else
+// Ray by ray through the hierarchy.
+INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i++) {
         Ray r = slot_ray(shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, i);
@@ -13,5 +23,13 @@ kernel void intersect_shadow(global struct BlockHeader *headers, global float *b
         uint id = slot_uint(shadow, SHADOW_ID, i);
         for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[id] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);
     }
+}
+#endif
+
+kernel void intersect_shadow(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
+    Block block = block_of(headers, blocks, get_global_id(0));
+    Geometry geometry = GEOMETRY_VIEW;
+    Queue shadow = QUEUE(block, SHADOW);
+    intersect_shadow_rays(geometry, block, shadow);
     *shadow.count = 0u;
 }

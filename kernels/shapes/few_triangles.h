@@ -1,0 +1,121 @@
+// LANES rays against all triangles of a small scene: cheaper than any hierarchy while there are few.
+//
+// Each vertex is turned once into a frame around the ray, with the ray as its z axis; a triangle is hit where the origin of
+// that frame lies inside its projection. Neighbours share the turned vertices and compute the same value, up to sign, for
+// their common edge: no ray slips between them.  (The projection of Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
+// Intersection", with a rotation in place of their permutation and shear, which differ from lane to lane.)
+#ifndef WAVELOBE_SHAPES_FEW_TRIANGLES_H
+#define WAVELOBE_SHAPES_FEW_TRIANGLES_H
+
+#include "core/rounding.h"
+#include "shared/bvh.h"
+#include "shared/scene.h"
+
+typedef struct {
+    global const float *vertices;              // 3 each
+    global const struct FewTriangle *triangles;
+    uint vertex_count, triangle_count;
+} FewTriangles;
+
+// The vertices as the rays see them.
+typedef struct {
+    Float x[FEW_VERTICES_MAX], y[FEW_VERTICES_MAX], z[FEW_VERTICES_MAX];
+} TurnedVertices;
+
+INLINE void turn_vertices(FewTriangles g, Vec3 origin, Vec3 direction, TurnedVertices *turned) {
+    Frame f = frame_of_normal(direction);
+    for (uint i = 0u; i < g.vertex_count; i++) {
+        global const float *p = g.vertices + 3u * i;
+        Vec3 v = to_local(f, vec3(p[0] - origin.x, p[1] - origin.y, p[2] - origin.z));
+        turned->x[i] = v.x;
+        turned->y[i] = v.y;
+        turned->z[i] = v.z;
+    }
+}
+
+// What the test of one triangle finds: areas opposite to the corners (twice, with the sign of the side), and `depth`, the
+// distance times their sum.
+typedef struct {
+    Float wa, wb, wc, sum, depth;
+    Int inside;
+} TriangleTest;
+
+INLINE TriangleTest test_triangle(const TurnedVertices *v, uint a, uint b, uint c) {
+    TriangleTest t;
+    // Products are rounded one by one, see above.
+    t.wa = v->x[c] * v->y[b] - v->y[c] * v->x[b];
+    t.wb = v->x[a] * v->y[c] - v->y[a] * v->x[c];
+    t.wc = v->x[b] * v->y[a] - v->y[b] * v->x[a];
+    t.sum = t.wa + t.wb + t.wc;
+    t.depth = madd(t.wa, v->z[a], madd(t.wb, v->z[b], t.wc * v->z[c]));
+    Float least = LESSER(LESSER(t.wa, t.wb), t.wc), most = GREATER(GREATER(t.wa, t.wb), t.wc);
+    t.inside = ((least >= 0.0f) | (most <= 0.0f)) & (t.sum != 0.0f);
+    return t;
+}
+
+INLINE Float greatest_of(Float a, Float b, Float c) { return GREATER(GREATER(fabs(a), fabs(b)), fabs(c)); }
+
+// Bound on the rounding error of a distance, as `distance_error` of shapes/triangle_block.h with the rotation in place of
+// the shear: each turned coordinate is a subtraction and a product of three terms, off by at most GAMMA(5) times the sum of
+// the magnitudes of its terms, which is at most sqrt(3) times the length of the vector, and that at most the sum of its
+// turned coordinates.
+INLINE Float few_distance_error(const TurnedVertices *v, uint a, uint b, uint c, const TriangleTest *t, Float inverse) {
+    Float x = greatest_of(v->x[a], v->x[b], v->x[c]), y = greatest_of(v->y[a], v->y[b], v->y[c]);
+    Float z = greatest_of(v->z[a], v->z[b], v->z[c]);
+    Float turn = (1.7320508f * GAMMA(5)) * (x + y + z);
+    Float area_error = 2.0f * madd((Float)GAMMA(2), x * y, turn * (x + y));
+    Float area = greatest_of(t->wa, t->wb, t->wc);
+    return 3.0f * madd((Float)GAMMA(3), area * z, madd(area_error, z, turn * area)) * fabs(inverse);
+}
+
+// Lanes in which triangle `index` is hit in (0, limit), and where.
+INLINE Int hit_triangle(const TurnedVertices *v, global const struct FewTriangle *triangle, Float limit, TriangleTest *t,
+                        Float *distance, Float *inverse) {
+    uint a = triangle->corner[0], b = triangle->corner[1], c = triangle->corner[2];
+    *t = test_triangle(v, a, b, c);
+    if (!any_lane(t->inside)) return t->inside;
+    *inverse = 1.0f / t->sum;
+    *distance = t->depth * *inverse;
+    Int hit = t->inside & (*distance > 0.0f) & (*distance < limit);
+    if (!any_lane(hit)) return hit;
+    return hit & (*distance > few_distance_error(v, a, b, c, t, *inverse));
+}
+
+typedef struct {
+    Float t, u, v;
+    UInt slot; // HIT_NONE: nothing
+} LaneHit;
+
+// The nearest hit of each ray in (0, limit).
+INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit) {
+    TurnedVertices turned;
+    turn_vertices(g, origin, direction, &turned);
+    LaneHit nearest = {limit, ZERO, ZERO, (UInt)HIT_NONE};
+    for (uint i = 0u; i < g.triangle_count; i++) {
+        TriangleTest t;
+        Float distance, inverse;
+        Int hit = hit_triangle(&turned, g.triangles + i, nearest.t, &t, &distance, &inverse);
+        if (!any_lane(hit)) continue;
+        nearest.t = SELECT(hit, distance, nearest.t);
+        nearest.u = SELECT(hit, t.wb * inverse, nearest.u);
+        nearest.v = SELECT(hit, t.wc * inverse, nearest.v);
+        nearest.slot = SELECT(hit, (UInt)g.triangles[i].slot, nearest.slot);
+    }
+    return nearest;
+}
+
+// Lanes of `wanted` whose ray hits anything in (0, limit).
+INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, Int wanted) {
+    TurnedVertices turned;
+    turn_vertices(g, origin, direction, &turned);
+    Int blocked = !TRUE_MASK;
+    for (uint i = 0u; i < g.triangle_count; i++) {
+        TriangleTest t;
+        Float distance, inverse;
+        blocked |= hit_triangle(&turned, g.triangles + i, limit, &t, &distance, &inverse);
+        if (!any_lane(wanted & !blocked)) break;
+    }
+    return blocked & wanted;
+}
+
+#endif
