@@ -22,13 +22,40 @@ std::string_view included_path(std::string_view line) {
     return rest.substr(0, rest.find('"'));
 }
 
+// The word after `#` of a directive, or an empty view.
+std::string_view directive(std::string_view line) {
+    if (!line.starts_with('#')) return {};
+    return line.substr(1, line.find_first_of(" \t\r\n", 1) - 1);
+}
+
+// How many conditions are open, the guard of a header not counted.
+class ConditionDepth {
+public:
+    void read(std::string_view line) {
+        const std::string_view word = directive(line);
+        if (word.starts_with("if")) {
+            if (first_ && line.starts_with("#ifndef WAVELOBE_")) --depth_;
+            ++depth_;
+            first_ = false;
+        } else if (word == "endif") {
+            --depth_;
+        }
+    }
+    bool inside() const { return depth_ > 0; }
+
+private:
+    int depth_ = 0;
+    bool first_ = true;
+};
+
 class Flattener {
 public:
     std::string text;
 
-    void append(std::string_view source, std::string_view name) {
+    void append(std::string_view source, std::string_view name, bool conditional = false) {
         mark(1, name);
         int line_number = 1;
+        ConditionDepth depth;
         while (!source.empty()) {
             const std::size_t end = std::min(source.find('\n'), source.size() - 1);
             const std::string_view line = source.substr(0, end + 1);
@@ -36,11 +63,14 @@ public:
             ++line_number;
             const std::string_view path = included_path(line);
             if (path.empty()) {
+                depth.read(line);
                 text += line;
                 continue;
             }
-            if (path.ends_with(".def") || seen_.insert(std::string(path)).second) {
-                append(embedded_text(path), path);
+            if (!seen_.contains(path)) {
+                const bool under_condition = conditional || depth.inside();
+                if (!under_condition && !path.ends_with(".def")) seen_.emplace(path);
+                append(embedded_text(path), path, under_condition);
                 if (!text.ends_with('\n')) text += '\n';
             }
             mark(line_number, name);
@@ -52,7 +82,7 @@ private:
         text += "#line " + std::to_string(line) + " \"" + std::string(name) + "\"\n";
     }
 
-    std::set<std::string> seen_;
+    std::set<std::string, std::less<>> seen_;
 };
 
 }  // namespace

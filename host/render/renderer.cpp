@@ -22,7 +22,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 constexpr int default_block_slots = 512;
 // Blocks in flight a compute thread: enough that a launch outweighs its overhead, few enough that their waves stay in the
 // caches of the cores.
-constexpr std::size_t blocks_per_thread = 8;
+constexpr std::size_t blocks_per_thread = 16;
 constexpr std::size_t named_nonfinite_samples = 8;
 
 std::uint32_t samples_per_block(int samples_per_pixel) {
@@ -76,7 +76,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       }()),
       scheduler(scene_data.parameters, static_cast<std::uint32_t>(settings.samples_per_pixel),
                 samples_per_block(settings.samples_per_pixel)),
-      block_count(std::min(scheduler.tile_count(), (getenv("BPT") ? std::size_t(atoi(getenv("BPT"))) : blocks_per_thread) * std::max(device.info().compute_units, 1U))),
+      block_count(std::min(scheduler.tile_count(), blocks_per_thread * std::max(device.info().compute_units, 1U))),
       buffers(device) {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
@@ -86,8 +86,6 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
     scene_data.parameters.few_triangle_count = static_cast<std::uint32_t>(few.triangles.size());
     scene_data.parameters.few_vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
     stats.setup_parts["bvh"] = seconds_since(start);
-    // Seven pushed a level and the sentinel; the usual size serves nearly every scene with one and the same program.
-    scene_data.features.bvh_stack = std::max(scene_data.features.bvh_stack, 7 * bvh.depth + 1);
 
     start = Clock::now();
     buffers.upload(scene_data, bvh, few, block_count, block_words(scene_data.features, slots));

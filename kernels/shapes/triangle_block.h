@@ -17,29 +17,22 @@ typedef struct {
 #define BLOCK_VERTEX_BYTES 96u
 #define BLOCK_PRIMITIVE_BYTES 288u
 
+// By selects: which axis is the largest is anyone's guess, and so would be a branch.
 INLINE RayShear ray_shear(const Ray *r) {
     RayShear s;
     float ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
-    float d0, d1, d2;
-    if (ax > ay && ax > az) {
-        s.kx = 1u, s.ky = 2u, s.kz = 0u;
-        d0 = r->dy, d1 = r->dz, d2 = r->dx;
-        s.ox = r->oy, s.oy = r->oz, s.oz = r->ox;
-    } else if (ay > az) {
-        s.kx = 2u, s.ky = 0u, s.kz = 1u;
-        d0 = r->dz, d1 = r->dx, d2 = r->dy;
-        s.ox = r->oz, s.oy = r->ox, s.oz = r->oy;
-    } else {
-        s.kx = 0u, s.ky = 1u, s.kz = 2u;
-        d0 = r->dx, d1 = r->dy, d2 = r->dz;
-        s.ox = r->ox, s.oy = r->oy, s.oz = r->oz;
-    }
-    s.sz = 1.0f / d2;
-    s.sx = d0 * s.sz;
-    s.sy = d1 * s.sz;
-    s.kx *= BLOCK_ROW_BYTES;
-    s.ky *= BLOCK_ROW_BYTES;
-    s.kz *= BLOCK_ROW_BYTES;
+    int x_major = (ax > ay) & (ax > az), y_major = !x_major & (ay > az);
+#define BY_MAJOR_AXIS(if_x, if_y, if_z) (x_major ? (if_x) : y_major ? (if_y) : (if_z))
+    s.kx = BY_MAJOR_AXIS(1u, 2u, 0u) * BLOCK_ROW_BYTES;
+    s.ky = BY_MAJOR_AXIS(2u, 0u, 1u) * BLOCK_ROW_BYTES;
+    s.kz = BY_MAJOR_AXIS(0u, 1u, 2u) * BLOCK_ROW_BYTES;
+    s.ox = BY_MAJOR_AXIS(r->oy, r->oz, r->ox);
+    s.oy = BY_MAJOR_AXIS(r->oz, r->ox, r->oy);
+    s.oz = BY_MAJOR_AXIS(r->ox, r->oy, r->oz);
+    s.sz = 1.0f / BY_MAJOR_AXIS(r->dx, r->dy, r->dz);
+    s.sx = BY_MAJOR_AXIS(r->dy, r->dz, r->dx) * s.sz;
+    s.sy = BY_MAJOR_AXIS(r->dz, r->dx, r->dy) * s.sz;
+#undef BY_MAJOR_AXIS
     return s;
 }
 
@@ -80,11 +73,14 @@ INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *
     float8 wa = cx * by - cy * bx, wb = ax * cy - ay * cx, wc = bx * ay - by * ax;
     float8 det = wa + wb + wc;
     float8 least = LESSER(LESSER(wa, wb), wc), most = GREATER(GREATER(wa, wb), wc);
+    // Most blocks end here, before the division.
+    uint inside = lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (det != 0.0f));
+    if (LIKELY(inside == 0u)) return 0u;
     float8 inverse = 1.0f / det;
     *t = s->sz * madd8(wa, az, madd8(wb, bz, wc * cz)) * inverse;
     *u = wb * inverse;
     *v = wc * inverse;
-    uint mask = lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (*t > 0.0f) & (*t < limit) & (det != 0.0f));
+    uint mask = inside & lane_bits8((*t > 0.0f) & (*t < limit));
     if (LIKELY(mask == 0u)) return 0u;
     float8 error = distance_error(largest_of(ax, bx, cx), largest_of(ay, by, cy),
                                   largest_of(az, bz, cz) * fabs(s->sz), largest_of(wa, wb, wc), inverse);

@@ -97,7 +97,7 @@ TEST_P(Lanes, GatherTakesEachLanesElement) {
     std::vector<float> table(3000);
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(i) + 0.5F;
     std::vector<std::uint32_t> indices(1024);
-    for (auto& index : indices) index = random() % 3000u;
+    for (auto& index : indices) index = static_cast<std::uint32_t>(random() % 3000u);
     indices[0] = 0;
     indices[1] = 2999;
     for (std::size_t i = 100; i < 150; ++i) indices[i] = 7;

@@ -2,8 +2,6 @@
 // than that takes.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -24,9 +22,8 @@ protected:
     unsigned lanes() const { return static_cast<unsigned>(GetParam()); }
     Probe probe_{R"(
         #include "core/rounding.h"
-        kernel void step(global const float *x, global const float *offset, global float *away, global float *along) {
+        kernel void step_along(global const float *x, global const float *offset, global float *along) {
             size_t i = get_global_id(0) * LANES;
-            store(away + i, next_away_from_zero(load(x + i)));
             store(along + i, round_along(load(x + i), load(offset + i)));
         }
         kernel void gammas(global float *out) {
@@ -46,10 +43,8 @@ protected:
                  {.lanes = GetParam(), .defines = ""}};
 };
 
-std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
-
 TEST_P(Rounding, StepsToTheNextFloat) {
-    std::vector<float> values = {0.0F, -0.0F, 1.0F, -1.0F, 1e-45F, -1e-45F, 1e-38F, 0.99999994F, 1024.0F, -3e38F, 0.1F, -77.7F, 2.0F,
+    const std::vector<float> values = {0.0F, -0.0F, 1.0F, -1.0F, 1e-45F, -1e-45F, 1e-38F, 0.99999994F, 1024.0F, -3e38F, 0.1F, -77.7F, 2.0F,
                                  -2.0F, 1e10F, std::numeric_limits<float>::min()};
     std::vector<float> xs, offsets;
     for (float x : values) {
@@ -59,12 +54,9 @@ TEST_P(Rounding, StepsToTheNextFloat) {
         }
     }
     const auto &x = xs, &offset = offsets;
-    std::vector<float> away(x.size()), along(x.size());
-    probe_.run("step", x.size() / lanes(), x, offset, away, along);
+    std::vector<float> along(x.size());
+    probe_.run("step_along", x.size() / lanes(), x, offset, along);
     for (std::size_t i = 0; i < x.size(); ++i) {
-        EXPECT_EQ(bits(away[i]), bits(std::signbit(x[i]) ? std::nextafter(x[i], -infinity) : std::nextafter(x[i], infinity)) |
-                                     (x[i] == 0 && std::signbit(x[i]) ? 0x80000000u : 0u))
-            << x[i];
         const float expected = offset[i] == 0 ? x[i] : std::nextafter(x[i], offset[i] > 0 ? infinity : -infinity);
         EXPECT_EQ(along[i], expected) << x[i] << " along " << offset[i];
     }

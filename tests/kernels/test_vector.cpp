@@ -36,11 +36,11 @@ const char* const source = R"(
         store3(out + 3 * n, n, i, f.t);
         store3(out + 6 * n, n, i, f.n);
     }
-    kernel void turn(global const float *normals, global const float *vectors, global float *local, global float *back, uint n) {
+    kernel void turn(global const float *normals, global const float *vectors, global float *in_frame, global float *back, uint n) {
         size_t i = get_global_id(0) * LANES;
         Frame f = frame_of_normal(load3(normals, n, i));
         Vec3 v = to_local(f, load3(vectors, n, i));
-        store3(local, n, i, v);
+        store3(in_frame, n, i, v);
         store3(back, n, i, to_world(f, v));
     }
     kernel void products(global const float *a, global const float *b, global float *cross_product, global float *dot_product,

@@ -1,0 +1,331 @@
+// Sample values: against an integer reference, the net property of every pair, and independence of what should not be
+// related.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "support/probe.h"
+#include "support/statistics.h"
+
+namespace wavelobe::test {
+namespace {
+
+using Word = std::uint32_t;
+
+// ---- reference: bit by bit, as the papers define it ------------------------------------------------------------
+
+Word reversed(Word x) {
+    Word y = 0;
+    for (int i = 0; i < 32; ++i) y |= (x >> i & 1u) << (31 - i);
+    return y;
+}
+
+// Generator columns of the first two Sobol dimensions (Joe and Kuo 2008): the identity, and 1 + x with m = 1.
+Word sobol(Word index, int dimension) {
+    Word column = 0x80000000u, value = 0;
+    for (; index != 0; index >>= 1) {
+        if ((index & 1u) != 0) value ^= column;
+        column = dimension == 0 ? column >> 1 : column ^ (column >> 1);
+    }
+    return value;
+}
+
+Word mixed(Word x) {
+    x = (x ^ (x >> 16)) * 0x21f0aaadu;
+    x = (x ^ (x >> 15)) * 0xd35a2d97u;
+    return x ^ (x >> 15);
+}
+
+Word next(Word seed) { return (seed ^ (seed >> 16)) * 0x7feb352du; }
+
+Word nested_uniform_scramble(Word x, Word seed) {
+    x = reversed(x);
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return reversed(x);
+}
+
+std::array<Word, 2> reference(Word x, Word y, Word index, Word pair, Word seed) {
+    const Word shuffle = mixed(mixed(mixed(mixed(seed) + x) + y) + pair * 0x9e3779b9u);
+    const Word seed1 = next(shuffle), seed2 = next(seed1);
+    const Word shuffled = nested_uniform_scramble(index, shuffle);
+    return {nested_uniform_scramble(sobol(shuffled, 0), seed1) >> 8, nested_uniform_scramble(sobol(shuffled, 1), seed2) >> 8};
+}
+
+// ---- the sampler ---------------------------------------------------------------------------------------------
+
+// Values as multiples of 2^-24, by sample.
+struct Samples {
+    std::vector<float> u1, u2;
+    Word a(std::size_t i) const { return static_cast<Word>(u1[i] * 0x1p24F); }
+    Word b(std::size_t i) const { return static_cast<Word>(u2[i] * 0x1p24F); }
+};
+
+struct Where {
+    std::vector<Word> x, y, index, pair;
+    void add(Word x_, Word y_, Word index_, Word pair_) {
+        x.push_back(x_);
+        y.push_back(y_);
+        index.push_back(index_);
+        pair.push_back(pair_);
+    }
+};
+
+Samples sample(const Where& where, Word seed, int lanes = 16) {
+    Probe probe(R"(
+        #include "sampling/sampler.h"
+        INLINE UInt load_words(global const uint *p) { return *(global const UIntUnaligned *)p; }
+        kernel void run(global const uint *x, global const uint *y, global const uint *index, global const uint *pair,
+                        global float *out1, global float *out2, uint seed) {
+            size_t i = get_global_id(0) * LANES;
+            SampleId id = sample_id(load_words(x + i), load_words(y + i), load_words(index + i), seed);
+            Float u1, u2;
+            sample_2d(id, load_words(pair + i), &u1, &u2);
+            store(out1 + i, u1);
+            store(out2 + i, u2);
+        })",
+                {.lanes = lanes, .defines = ""});
+    Where w = where;
+    const std::size_t count = w.x.size();
+    for (auto* list : {&w.x, &w.y, &w.index, &w.pair}) list->resize((count + 15) / 16 * 16);
+    const Where& padded = w;
+    Samples s{std::vector<float>(w.x.size()), std::vector<float>(w.x.size())};
+    probe.run("run", w.x.size() / static_cast<unsigned>(lanes), padded.x, padded.y, padded.index, padded.pair, s.u1, s.u2, seed);
+    s.u1.resize(count);
+    s.u2.resize(count);
+    return s;
+}
+
+Where anywhere() {
+    std::mt19937 random(2);
+    Where where;
+    for (int i = 0; i < 40000; ++i) {
+        const auto r = [&] { return static_cast<Word>(random()); };
+        where.add(r() >> (i % 3 * 10), r() >> (i % 5 * 6), r() >> (1 + i % 31), r() >> (i % 4 * 8));
+    }
+    where.add(0, 0, 0, 0);
+    where.add(0xffffffffu, 0xffffffffu, 0x7fffffffu, 0xffffffffu);
+    return where;
+}
+
+TEST(Sampler, FollowsTheReference) {
+    const Where where = anywhere();
+    for (Word seed : {0u, 1u, 0xdeadbeefu}) {
+        const Samples s = sample(where, seed);
+        for (std::size_t i = 0; i < where.x.size(); ++i) {
+            const auto expected = reference(where.x[i], where.y[i], where.index[i], where.pair[i], seed);
+            ASSERT_EQ(s.a(i), expected[0]) << i;
+            ASSERT_EQ(s.b(i), expected[1]) << i;
+            // A multiple of 2^-24 below one.
+            ASSERT_EQ(static_cast<float>(expected[0]) * 0x1p-24F, s.u1[i]);
+            ASSERT_LT(s.u1[i], 1.0F);
+            ASSERT_LT(s.u2[i], 1.0F);
+        }
+    }
+}
+
+TEST(Sampler, HasTheSameBitsAtEveryWidth) {
+    const Where where = anywhere();
+    const Samples wide = sample(where, 5);
+    for (int lanes : {1, 8}) {
+        const Samples s = sample(where, 5, lanes);
+        EXPECT_EQ(s.u1, wide.u1) << lanes;
+        EXPECT_EQ(s.u2, wide.u2) << lanes;
+    }
+}
+
+TEST(Sampler, BuildingBlocks) {
+    Probe probe(R"(
+        #include "sampling/sampler.h"
+        kernel void run(global const uint *in, global uint *reverse, global uint *second, global uint *scrambled, uint seed) {
+            size_t i = get_global_id(0) * LANES;
+            UInt x = *(global const UIntUnaligned *)(in + i);
+            *(global UIntUnaligned *)(reverse + i) = reverse_bits(x);
+            *(global UIntUnaligned *)(second + i) = sobol_second_reversed(x);
+            *(global UIntUnaligned *)(scrambled + i) = scramble_reversed(x, (UInt)seed);
+        })");
+    std::mt19937 random(7);
+    std::vector<Word> words;
+    for (int k = 0; k < 32; ++k) words.push_back(1u << k);
+    // Pairs that differ from bit `k` on, in that bit and anything above.
+    for (int k = 0; k < 32; ++k) {
+        for (int i = 0; i < 500; ++i) {
+            const Word x = static_cast<Word>(random());
+            words.push_back(x);
+            words.push_back(x ^ ((static_cast<Word>(random()) << 1 | 1u) << k));
+        }
+    }
+    const auto& in = words;
+    for (Word seed : {0u, 0xffffffffu, 0x12345678u, 0x9abcdef1u}) {
+        std::vector<Word> reverse(in.size()), second(in.size()), scrambled(in.size());
+        probe.run("run", in.size() / 16, in, reverse, second, scrambled, seed);
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            ASSERT_EQ(reverse[i], reversed(in[i]));
+            ASSERT_EQ(second[i], reversed(sobol(in[i], 1)));
+        }
+        // Nested scrambling: a bit is kept or flipped by what is below it alone.
+        for (std::size_t i = 32; i < in.size(); i += 2) {
+            const Word difference = in[i] ^ in[i + 1];
+            const Word up_to_lowest = difference ^ (difference - 1);
+            ASSERT_EQ((scrambled[i] ^ scrambled[i + 1]) & up_to_lowest, difference & up_to_lowest);
+        }
+    }
+}
+
+// The first 2^m samples, and every later aligned run of 2^m, have one point in each elementary interval.
+TEST(Sampler, EveryPairIsAScrambledNet) {
+    constexpr int most = 10;
+    for (Word start : {0u, 1u << most, 5u << most, 0x7fffffffu - ((1u << most) - 1)}) {
+        for (auto [x, y, pair, seed] : {std::array{0u, 0u, 0u, 0u}, std::array{3u, 2u, 1u, 0u}, std::array{1919u, 1079u, 17u, 1u},
+                                        std::array{5u, 7u, 2u, 77u}, std::array{5u, 8u, 123u, 77u}}) {
+            Where where;
+            for (Word i = 0; i < 1u << most; ++i) where.add(x, y, start + i, pair);
+            const Samples s = sample(where, seed);
+            for (int m = 0; m <= most; ++m) {
+                for (Word block = 0; block < 1u << (most - m); ++block) {
+                    for (int a = 0; a <= m; ++a) {
+                        std::vector<bool> taken(std::size_t{1} << m, false);
+                        for (std::size_t i = std::size_t{block} << m; i < std::size_t{block + 1} << m; ++i) {
+                            const std::size_t cell = (s.a(i) >> (24 - a) << (m - a)) | s.b(i) >> (24 - (m - a));
+                            ASSERT_FALSE(taken[cell]) << "start " << start << " m " << m << " a " << a;
+                            taken[cell] = true;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Any number of samples, not just a power of two: each elementary interval of size 2^-m holds n / 2^m, rounded down or up.
+TEST(Sampler, EveryPrefixIsBalanced) {
+    constexpr Word count = 1000;
+    Where where;
+    for (Word i = 0; i < count; ++i) where.add(12, 34, i, 3);
+    const Samples s = sample(where, 9);
+    for (int m = 1; m <= 7; ++m) {
+        for (int a = 0; a <= m; ++a) {
+            std::vector<Word> counts(std::size_t{1} << m, 0);
+            for (Word n = 1; n <= count; ++n) {
+                ++counts[(s.a(n - 1) >> (24 - a) << (m - a)) | s.b(n - 1) >> (24 - (m - a))];
+                const auto [least, greatest] = std::minmax_element(counts.begin(), counts.end());
+                ASSERT_GE(*least, n >> m);
+                ASSERT_LE(*greatest, (n >> m) + 1);
+            }
+        }
+    }
+}
+
+// ---- statistics over pixels, pairs and seeds ------------------------------------------------------------------------
+
+// Chance that any one of these tests of fixed samples fails although its hypothesis holds.
+constexpr double significance = 1e-3;
+
+// Two variables, independent and uniform: Pearson's test of their joint distribution on a grid.
+double joint_p_value(const std::vector<float>& u, const std::vector<float>& v, int bins) {
+    std::vector<double> counts(static_cast<std::size_t>(bins * bins), 0.0);
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const auto cell = static_cast<int>(u[i] * static_cast<float>(bins)) * bins + static_cast<int>(v[i] * static_cast<float>(bins));
+        counts[static_cast<std::size_t>(cell)] += 1;
+    }
+    const std::vector<double> expected(counts.size(), static_cast<double>(u.size()) / static_cast<double>(counts.size()));
+    return chi_square_test(counts, expected).p_value;
+}
+
+// The same sample in each pixel of a picture.
+Samples picture(Word index, Word pair, Word seed, Word shift_x = 0, Word shift_y = 0) {
+    Where where;
+    for (Word y = 0; y < 512; ++y) {
+        for (Word x = 0; x < 512; ++x) where.add(x + shift_x, y + shift_y, index, pair);
+    }
+    return sample(where, seed);
+}
+
+TEST(Sampler, IsUniformOverPixels) {
+    const double threshold = sidak_threshold(significance, 5 * 3);
+    for (auto [index, pair, seed] : {std::array{0u, 0u, 0u}, std::array{0u, 1u, 0u}, std::array{1u, 0u, 0u}, std::array{4097u, 9u, 3u},
+                                     std::array{0u, 0u, 0x80000000u}}) {
+        const Samples s = picture(index, pair, seed);
+        EXPECT_GT(joint_p_value(s.u1, s.u2, 64), threshold) << index << " " << pair << " " << seed;
+        double mean = 0, square = 0;
+        for (float u : s.u1) {
+            mean += u - 0.5;
+            square += (u - 0.5) * (u - 0.5) - 1.0 / 12;
+        }
+        const double root = std::sqrt(static_cast<double>(s.u1.size()));
+        EXPECT_GT(normal_p_value(mean / root * std::sqrt(12.0)), threshold);
+        EXPECT_GT(normal_p_value(square / root * std::sqrt(180.0)), threshold);
+    }
+}
+
+TEST(Sampler, NeighboursAreIndependent) {
+    struct Shift {
+        Word index, pair, seed, x, y;
+    };
+    const Samples here = picture(6, 4, 1);
+    const std::vector<Shift> others = {{6, 4, 1, 1, 0}, {6, 4, 1, 0, 1}, {6, 4, 1, 1, 1}, {6, 4, 1, 2, 0},  {6, 4, 1, 0, 16}, {6, 5, 1, 0, 0},
+                                       {6, 6, 1, 0, 0}, {6, 8, 1, 0, 0}, {6, 20, 1, 0, 0}, {6, 4, 2, 0, 0}, {6, 4, 3, 0, 0},  {6, 4, 0, 1, 0},
+                                       // One more pixel and one pair less must not be the same.
+                                       {6, 3, 1, 1, 0}};
+    const double threshold = sidak_threshold(significance, others.size() * 4);
+    for (const Shift& o : others) {
+        const Samples there = picture(o.index, o.pair, o.seed, o.x, o.y);
+        const auto where = testing::Message() << o.pair << " " << o.seed << " " << o.x << " " << o.y;
+        EXPECT_GT(joint_p_value(here.u1, there.u1, 32), threshold) << where;
+        EXPECT_GT(joint_p_value(here.u2, there.u2, 32), threshold) << where;
+        EXPECT_GT(joint_p_value(here.u1, there.u2, 32), threshold) << where;
+        EXPECT_GT(joint_p_value(here.u2, there.u1, 32), threshold) << where;
+    }
+}
+
+// Within one pixel, two pairs of the same samples: shuffling must make them independent although each is a net.
+TEST(Sampler, PairsOfAPixelAreIndependent) {
+    constexpr Word count = 4096;
+    const auto pixel = [&](Word pair) {
+        Where where;
+        for (Word i = 0; i < count; ++i) where.add(40, 50, i, pair);
+        return sample(where, 4);
+    };
+    std::vector<Samples> pairs;
+    for (Word pair = 0; pair < 9; ++pair) pairs.push_back(pixel(pair));
+    const double threshold = sidak_threshold(significance, 36 * 4);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        for (std::size_t j = i + 1; j < pairs.size(); ++j) {
+            EXPECT_GT(joint_p_value(pairs[i].u1, pairs[j].u1, 16), threshold) << i << " " << j;
+            EXPECT_GT(joint_p_value(pairs[i].u2, pairs[j].u2, 16), threshold) << i << " " << j;
+            EXPECT_GT(joint_p_value(pairs[i].u1, pairs[j].u2, 16), threshold) << i << " " << j;
+            EXPECT_GT(joint_p_value(pairs[i].u2, pairs[j].u1, 16), threshold) << i << " " << j;
+        }
+    }
+}
+
+// What a net is for: the mean of a smooth function converges faster than that of random points, whose variance here is the
+// function's over n.
+TEST(Sampler, SmoothIntegralsConvergeFasterThanRandomly) {
+    constexpr Word count = 1024, pixels = 64;
+    Where where;
+    for (Word p = 0; p < pixels; ++p) {
+        for (Word i = 0; i < count; ++i) where.add(p, 1, i, 2);
+    }
+    const Samples s = sample(where, 6);
+    double square = 0;
+    for (std::size_t p = 0; p < pixels; ++p) {
+        double mean = 0;
+        for (std::size_t i = p * count; i < (p + 1) * count; ++i) mean += s.u1[i] * s.u2[i] / count;
+        square += (mean - 0.25) * (mean - 0.25) / pixels;
+    }
+    const double random_variance = (1.0 / 9 - 1.0 / 16) / count;
+    // Owen 1997: the variance of scrambled nets is of order n^-3 (log n) for smooth functions, a factor of 10^6 / 7 here.
+    EXPECT_LT(square, random_variance / 10000);
+}
+
+}  // namespace
+}  // namespace wavelobe::test

@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include "support/stage.h"
+
+namespace wavelobe::test {
+namespace {
+
+class Generate : public StageTest {};
+
+// A film of 40 x 24 pixels: its last tile has 8 x 8 pixels inside.
+Scene film_scene() {
+    Scene scene = empty_scene(1);
+    scene.film.width = scene.film.crop_width = 40;
+    scene.film.height = scene.film.crop_height = 24;
+    look_at(scene, {1, 2, 3}, {2, 2.5F, -4}, {0, 1, 0}, 50.0F);
+    scene.camera.near_clip = 0.25F;
+    scene.camera.far_clip = 100.0F;
+    return scene;
+}
+
+// Film coordinates in pixels that a camera ray passes through.
+glm::dvec2 film_position(const Scene& scene, const glm::vec3& direction) {
+    const glm::dvec3 d = glm::inverse(glm::dmat3(scene.camera.to_world)) * glm::dvec3(direction);
+    const double half_width = std::tan(glm::radians(0.5 * static_cast<double>(scene.camera.fov_x_degrees)));
+    const double pixel_size = 2.0 * half_width / scene.film.width;
+    return {0.5 * scene.film.width - d.x / d.z / pixel_size, 0.5 * scene.film.height - d.y / d.z / pixel_size};
+}
+
+TEST_P(Generate, StartsThePathsInsideTheWindow) {
+    const Scene scene = film_scene();
+    StageBench bench(scene, GetParam(), 1024);
+    bench.header().tile_x = 32;
+    bench.header().tile_y = 16;
+    bench.header().path_count = 2 * TILE_PIXELS;
+    bench.header().next_path = 0;
+    bench.run("generate");
+    EXPECT_EQ(bench.header().next_path, 2 * TILE_PIXELS);
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t id = 0; id < 2 * TILE_PIXELS; ++id) {
+        if (TILE_X(id) < 8 && TILE_Y(id) < 8) expected.push_back(id);
+    }
+    EXPECT_EQ(expected.size(), 2U * 64U);
+    EXPECT_EQ(bench.ids(QUEUE_RAYS), expected);
+}
+
+TEST_P(Generate, RaysPassThroughTheirPixels) {
+    const Scene scene = film_scene();
+    StageBench bench(scene, GetParam(), 1024);
+    bench.header().tile_x = 16;
+    bench.header().tile_y = 0;
+    bench.header().path_count = 3 * TILE_PIXELS;
+    bench.header().next_path = 0;
+    bench.run("generate");
+    ASSERT_EQ(bench.header().count[QUEUE_RAYS], 3 * TILE_PIXELS);
+    const glm::dvec3 eye{scene.camera.to_world[3]};
+    const glm::dvec3 forward{scene.camera.to_world[2]};
+    for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
+        const TestPath p = bench.path(QUEUE_RAYS, i);
+        const glm::dvec2 at = film_position(scene, p.direction);
+        const double rounding = 1e-4;  // of a pixel: a direction's rounding of 1e-7 over a pixel's angle of 0.02
+        ASSERT_GE(at.x, 16 + TILE_X(p.id) - rounding);
+        ASSERT_LE(at.x, 17 + TILE_X(p.id) + rounding);
+        ASSERT_GE(at.y, TILE_Y(p.id) - rounding);
+        ASSERT_LE(at.y, TILE_Y(p.id) + 1 + rounding);
+        ASSERT_NEAR(glm::length(glm::dvec3(p.direction)), 1.0, stage_rounding);
+        // Planes of depth bound the ray.
+        const double stretch = 1.0 / glm::dot(glm::dvec3(p.direction), forward);
+        expect_close(p.origin, eye + glm::dvec3(p.direction) * stretch * 0.25);
+        ASSERT_NEAR(p.t, stretch * 99.75, 99.75 * stage_rounding);
+        ASSERT_EQ(p.throughput, glm::vec3(1));
+        ASSERT_LT(p.pdf, 0.0F);
+        ASSERT_EQ(p.depth, 0U);
+    }
+}
+
+// Samples of a pixel differ, and are those of the sample's index, not of its place in the block.
+TEST_P(Generate, SamplesDependOnPixelAndIndexAlone) {
+    StageBench bench(film_scene(), GetParam(), 1024);
+    const auto direction = [&](std::uint32_t first_sample, std::uint32_t id) {
+        bench.header().first_sample = first_sample;
+        bench.header().count[QUEUE_RAYS] = 0;
+        bench.header().path_count = 2 * TILE_PIXELS;
+        bench.header().next_path = 0;
+        bench.run("generate");
+        EXPECT_EQ(bench.path(QUEUE_RAYS, id).id, id);
+        return bench.path(QUEUE_RAYS, id).direction;
+    };
+    const std::uint32_t pixel = 77;
+    const glm::vec3 sample5 = direction(5, pixel);
+    EXPECT_EQ(direction(4, TILE_PIXELS + pixel), sample5);
+    EXPECT_NE(direction(6, pixel), sample5);
+}
+
+TEST_P(Generate, FillsFreeSlotsAndKeepsTheOthers) {
+    const int lanes = GetParam();
+    StageBench bench(film_scene(), lanes, 64);
+    std::vector<TestPath> waiting(10);
+    for (std::uint32_t i = 0; i < waiting.size(); ++i) {
+        waiting[i].id = 700 + i;
+        waiting[i].throughput = glm::vec3(0.5F, 0.25F, static_cast<float>(i));
+        waiting[i].depth = 3;
+    }
+    bench.fill(QUEUE_RAYS, waiting);
+    bench.header().path_count = 4 * TILE_PIXELS;
+    bench.header().next_path = 2 * TILE_PIXELS;
+    bench.run("generate");
+    // Whole groups, as many as fit.
+    const auto started = static_cast<std::uint32_t>((64 - 10) / lanes * lanes);
+    EXPECT_EQ(bench.header().count[QUEUE_RAYS], 10 + started);
+    EXPECT_EQ(bench.header().next_path, 2 * TILE_PIXELS + started);
+    for (std::uint32_t i = 0; i < 10; ++i) {
+        EXPECT_EQ(bench.path(QUEUE_RAYS, i).id, 700 + i);
+        EXPECT_EQ(bench.path(QUEUE_RAYS, i).throughput, waiting[i].throughput);
+        EXPECT_EQ(bench.path(QUEUE_RAYS, i).depth, 3U);
+    }
+    for (std::uint32_t i = 0; i < started; ++i) EXPECT_EQ(bench.path(QUEUE_RAYS, 10 + i).id, 2 * TILE_PIXELS + i);
+}
+
+TEST_P(Generate, DoesNothingWhenAllAreStarted) {
+    StageBench bench(film_scene(), GetParam());
+    bench.run("generate");
+    EXPECT_EQ(bench.header().count[QUEUE_RAYS], 0U);
+    EXPECT_EQ(bench.header().next_path, TILE_PIXELS);
+}
+
+TEST_P(Generate, CropWindowKeepsFilmCoordinates) {
+    Scene scene = film_scene();
+    StageBench whole(scene, GetParam(), 1024);
+    scene.film.crop_x = 16;
+    scene.film.crop_width = 7;
+    scene.film.crop_height = 5;
+    StageBench crop(scene, GetParam(), 1024);
+    for (StageBench* bench : {&whole, &crop}) {
+        bench->header().tile_x = 16;
+        bench->header().next_path = 0;
+        bench->run("generate");
+    }
+    ASSERT_EQ(crop.header().count[QUEUE_RAYS], 35U);
+    for (std::uint32_t i = 0; i < 35; ++i) {
+        const TestPath p = crop.path(QUEUE_RAYS, i);
+        EXPECT_EQ(whole.path(QUEUE_RAYS, p.id).direction, p.direction);
+    }
+}
+
+WAVELOBE_AT_EACH_WIDTH(Generate);
+
+}  // namespace
+}  // namespace wavelobe::test
