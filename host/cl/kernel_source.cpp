@@ -1,5 +1,6 @@
 #include "cl/kernel_source.h"
 
+#include <algorithm>
 #include <set>
 #include <stdexcept>
 
@@ -67,10 +68,13 @@ public:
                 text += line;
                 continue;
             }
-            if (!seen_.contains(path)) {
+            // A file that is being expanded is behind its own guard.
+            if (!seen_.contains(path) && std::ranges::find(open_, path) == open_.end()) {
                 const bool under_condition = conditional || depth.inside();
                 if (!under_condition && !path.ends_with(".def")) seen_.emplace(path);
+                open_.push_back(path);
                 append(embedded_text(path), path, under_condition);
+                open_.pop_back();
                 if (!text.ends_with('\n')) text += '\n';
             }
             mark(line_number, name);
@@ -83,6 +87,7 @@ private:
     }
 
     std::set<std::string, std::less<>> seen_;
+    std::vector<std::string_view> open_;
 };
 
 }  // namespace

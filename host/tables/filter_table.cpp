@@ -39,12 +39,11 @@ double bisect(const std::function<double(double)>& function, double radius, doub
 std::vector<float> build_filter_table(const ReconstructionFilter& filter) {
     const auto integral = integral_from_centre(filter);
     const double radius = filter.radius, total = integral(radius);
-    constexpr unsigned half = FILTER_TABLE_CELLS / 2;
     std::vector<float> table(FILTER_TABLE_CELLS + 1);
-    for (unsigned i = 1; i <= half; ++i) {
-        const double x = i == half ? radius : bisect(integral, radius, total * i / half);
-        table[half + i] = static_cast<float>(x);
-        table[half - i] = static_cast<float>(-x);
+    table[0] = filter.radius;
+    for (unsigned i = 1; i < FILTER_TABLE_CELLS; ++i) {
+        const double root = static_cast<double>(i) / FILTER_TABLE_CELLS;
+        table[i] = static_cast<float>(bisect(integral, radius, total * (1 - root * root)));
     }
     return table;
 }

@@ -7,10 +7,11 @@
 
 namespace wavelobe {
 
-// Inverse distribution function of the filter along one axis, in pixels from the pixel centre, at i / FILTER_TABLE_CELLS
-// for i from 0 to FILTER_TABLE_CELLS: increasing from -radius to radius, odd about the middle. Linear between entries, it
-// is exact for the box; for the others its distribution function is off by 2.5e-4 at most, in the outermost cells, and
-// by less than 1e-6 inside half the radius.
+// Inverse of one tail of the filter along one axis: entry i is the distance from the pixel centre, in pixels, beyond which
+// lies the share (i / FILTER_TABLE_CELLS)^2 of the filter, from the radius for i = 0 to 0 for i = FILTER_TABLE_CELLS.
+// Squares, because filters that reach zero linearly have tails like the square of the distance to their end. With the
+// share interpolated linearly between entries, the density is constant between them: exact for the box; for the others
+// the distribution function is off by 1.5e-6 at most.
 //
 // Gaussian: max(0, exp(-x^2 / 2 s^2) - exp(-r^2 / 2 s^2)), Mitsuba's: it reaches zero at the radius.
 std::vector<float> build_filter_table(const ReconstructionFilter& filter);

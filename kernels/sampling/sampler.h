@@ -35,10 +35,11 @@ INLINE UInt next_seed(UInt h) { return (h ^ (h >> 16)) * (UInt)0x7feb352du; }
 
 // Owen scrambling of a number whose bits are reversed: a bit flips by a hash of the bits below it. Laine and Karras
 // 2011, "Stratified Sampling for Stochastic Transparency", with the rounds and factors of Vegdahl 2021, "Building a
-// Better LK Hash".
+// Better LK Hash", but the seed is added before the first round: the low bits of few indices are zero, which wasted that
+// round, and one pair in a thousand was closer to another than random scrambling makes them.
 INLINE UInt scramble_reversed(UInt x, UInt seed) {
-    x ^= x * (UInt)0x3d20adeau;
     x += seed;
+    x ^= x * (UInt)0x3d20adeau;
     x *= (seed >> 16) | (UInt)1u;
     x ^= x * (UInt)0x05526c56u;
     x ^= x * (UInt)0x53a22864u;

@@ -58,15 +58,19 @@ INLINE Vec2 square_to_triangle(Float u1, Float u2) {
     return b;
 }
 
-// An offset from the pixel centre, in pixels, with the density of the reconstruction filter along one axis: the
-// filter's inverse distribution function, linear between the entries of the table (host/tables/filter_table.h).
-// Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling".
+// An offset from the pixel centre, in pixels, with the density of the reconstruction filter along one axis, by inversion
+// of its tails (host/tables/filter_table.h). Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling".
 INLINE Float sample_filter(global const float *table, Float u) {
-    Float position = u * (float)FILTER_TABLE_CELLS;
-    Int cell = convert_Int(position);
-    Float low = gather(table, as_UInt(cell));
-    Float high = gather(table + 1, as_UInt(cell));
-    return madd(position - convert_Float(cell), high - low, low);
+    Float v = madd(u, (Float)2.0f, (Float)-1.0f);
+    Float tail = ONE - fabs(v); // share of the filter beyond the offset
+    Int cell = convert_Int(sqrt(tail) * (float)FILTER_TABLE_CELLS);
+    cell = SELECT(cell < (Int)FILTER_TABLE_CELLS, cell, (Int)(FILTER_TABLE_CELLS - 1u));
+    Float i = convert_Float(cell);
+    Float far = gather(table, as_UInt(cell));
+    Float near = gather(table + 1, as_UInt(cell));
+    // The cell holds the shares from i^2 to (i + 1)^2, in units of 1 / FILTER_TABLE_CELLS^2.
+    Float position = madd(tail, (Float)((float)FILTER_TABLE_CELLS * (float)FILTER_TABLE_CELLS), -i * i) / madd(i, (Float)2.0f, ONE);
+    return copy_sign(madd(position, near - far, far), v);
 }
 
 #endif

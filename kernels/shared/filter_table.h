@@ -2,7 +2,7 @@
 #ifndef WAVELOBE_SHARED_FILTER_TABLE_H
 #define WAVELOBE_SHARED_FILTER_TABLE_H
 
-// Cells of equal probability; the table holds their ends, one more.
-#define FILTER_TABLE_CELLS 1024u
+// Cells of the table; it holds their ends, one more.
+#define FILTER_TABLE_CELLS 512u
 
 #endif

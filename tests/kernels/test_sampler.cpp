@@ -45,8 +45,8 @@ Word next(Word seed) { return (seed ^ (seed >> 16)) * 0x7feb352du; }
 
 Word nested_uniform_scramble(Word x, Word seed) {
     x = reversed(x);
-    x ^= x * 0x3d20adeau;
     x += seed;
+    x ^= x * 0x3d20adeau;
     x *= (seed >> 16) | 1u;
     x ^= x * 0x05526c56u;
     x ^= x * 0x53a22864u;
@@ -286,24 +286,84 @@ TEST(Sampler, NeighboursAreIndependent) {
     }
 }
 
-// Within one pixel, two pairs of the same samples: shuffling must make them independent although each is a net.
-TEST(Sampler, PairsOfAPixelAreIndependent) {
-    constexpr Word count = 4096;
-    const auto pixel = [&](Word pair) {
-        Where where;
-        for (Word i = 0; i < count; ++i) where.add(40, 50, i, pair);
-        return sample(where, 4);
+// ---- pairs of one pixel against true random scrambling -----------------------------------------------------------------
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t strong_hash(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+// Owen's scrambling by its definition: each bit from `highest` to `lowest` flips at random, independently for each value of
+// the bits above it.
+Word owen_scramble(Word x, std::uint64_t seed, int highest, int lowest) {
+    Word result = x;
+    for (int bit = highest; bit >= lowest; --bit) {
+        const std::uint64_t above = std::uint64_t{x} >> (bit + 1);
+        const auto node = strong_hash(seed * 64 + static_cast<std::uint64_t>(bit)) + above;
+        result ^= static_cast<Word>(strong_hash(node) & 1u) << bit;
+    }
+    return result;
+}
+
+constexpr Word grid_samples = 256;  // an average of one a cell of a 16 by 16 grid
+
+// Pearson's statistic of the joint distribution of two values; no test by itself, because samples of nets are not
+// independent.
+int grid_statistic(const Word* a, const Word* b) {
+    std::array<int, 256> counts{};
+    for (Word i = 0; i < grid_samples; ++i) ++counts[(a[i] >> 20 << 4) | b[i] >> 20];
+    int statistic = 0;
+    for (int count : counts) statistic += (count - 1) * (count - 1);
+    return statistic;
+}
+
+// Each pair is a net; shuffling must make two of them as unrelated as random scrambling would.
+TEST(Sampler, PairsOfAPixelAreAsUnrelatedAsRandomScramblingMakesThem) {
+    constexpr Word pixels = 12000;
+    const int edges[] = {160, 180, 190, 200, 210, 220, 230, 240, 250, 260, 270, 280, 300, 320, 340, 370, 400, 450};
+    const auto bin = [&](int statistic) { return static_cast<std::size_t>(std::upper_bound(std::begin(edges), std::end(edges), statistic) - edges); };
+    struct Values {
+        Word pair;
+        int dimension;
     };
-    std::vector<Samples> pairs;
-    for (Word pair = 0; pair < 9; ++pair) pairs.push_back(pixel(pair));
-    const double threshold = sidak_threshold(significance, 36 * 4);
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        for (std::size_t j = i + 1; j < pairs.size(); ++j) {
-            EXPECT_GT(joint_p_value(pairs[i].u1, pairs[j].u1, 16), threshold) << i << " " << j;
-            EXPECT_GT(joint_p_value(pairs[i].u2, pairs[j].u2, 16), threshold) << i << " " << j;
-            EXPECT_GT(joint_p_value(pairs[i].u1, pairs[j].u2, 16), threshold) << i << " " << j;
-            EXPECT_GT(joint_p_value(pairs[i].u2, pairs[j].u1, 16), threshold) << i << " " << j;
+    constexpr std::array<std::array<Values, 2>, 3> cases = {{{{{1, 0}, {2, 0}}}, {{{1, 1}, {2, 0}}}, {{{1, 1}, {5, 1}}}}};
+    for (const auto& both : cases) {
+        std::vector<Word> ours[2], ideal[2];
+        for (int k : {0, 1}) {
+            Where where;
+            for (Word p = 0; p < pixels; ++p) {
+                for (Word i = 0; i < grid_samples; ++i) where.add(p, 50, i, both[k].pair);
+            }
+            const Samples s = sample(where, 4);
+            for (Word p = 0; p < pixels; ++p) {
+                const std::uint64_t seed = strong_hash((std::uint64_t{p} << 8) + both[k].pair);
+                for (Word i = 0; i < grid_samples; ++i) {
+                    const std::size_t at = std::size_t{p} * grid_samples + i;
+                    ours[k].push_back(both[k].dimension == 0 ? s.a(at) : s.b(at));
+                    // Eight bits of index and the four bits that choose a cell.
+                    const Word shuffled = owen_scramble(i, seed, 7, 0);
+                    const auto dimension_seed = strong_hash(seed + 1 + static_cast<std::uint64_t>(both[k].dimension));
+                    ideal[k].push_back(owen_scramble(sobol(shuffled, both[k].dimension), dimension_seed, 31, 28) >> 8);
+                }
+            }
         }
+        std::vector<double> our_counts(std::size(edges) + 1, 0.0), ideal_counts(std::size(edges) + 1, 0.0);
+        for (std::size_t at = 0; at < ours[0].size(); at += grid_samples) {
+            ++our_counts[bin(grid_statistic(&ours[0][at], &ours[1][at]))];
+            ++ideal_counts[bin(grid_statistic(&ideal[0][at], &ideal[1][at]))];
+        }
+        // Two samples of one distribution: the sum of (a - b)^2 / (a + b) follows the chi-square distribution.
+        double statistic = 0;
+        for (std::size_t i = 0; i < our_counts.size(); ++i) {
+            const double a = our_counts[i], b = ideal_counts[i];
+            ASSERT_GT(a + b, 5);
+            statistic += (a - b) * (a - b) / (a + b);
+        }
+        EXPECT_GT(chi_square_p_value(statistic, static_cast<double>(our_counts.size() - 1)), sidak_threshold(significance, cases.size()))
+            << both[0].pair << " " << both[1].pair;
     }
 }
 
