@@ -10,11 +10,11 @@ class SortPaths : public StageTest {};
 
 constexpr std::uint32_t traced_queues[] = {QUEUE_ESCAPED, QUEUE_EMITTED, QUEUE_DELTA, QUEUE_GLOSSY, QUEUE_DIFFUSE};
 
-// Triangles 0, 1: diffuse; 2, 3: mirror; 4, 5: rough metal; 6, 7: a diffuse light. All in y = 0, normals up.
+// Triangles 0, 1: diffuse; 2, 3: mirror; 4, 5: rough metal; 6, 7: a diffuse light. All in y = 1, normals up.
 Scene four_surfaces(bool environment = true) {
     Scene scene = empty_scene(16);
     const int materials[] = {add_diffuse(scene, Rgb{0.5F}), add_material(scene, Conductor{}), add_material(scene, RoughConductor{}), 0};
-    for (int i = 0; i < 4; ++i) add_quad(scene, {static_cast<float>(2 * i), 0, 0}, {0, 0, 1}, {1, 0, 0}, materials[i]);
+    for (int i = 0; i < 4; ++i) add_quad(scene, {static_cast<float>(2 * i), 1, 0}, {0, 0, 1}, {1, 0, 0}, materials[i]);
     make_emitter(scene.shapes.back(), {3, 2, 1});
     if (environment) scene.emitters.emplace_back(ConstantEmitter{});
     return scene;
@@ -147,9 +147,9 @@ TEST_P(SortPaths, HiddenEmittersArePassed) {
     EXPECT_EQ(bench.ids(QUEUE_DIFFUSE), (Ids{1, 3, 5, 7, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}));
     for (std::uint32_t i = 0; i < 5; ++i) {
         const TestPath p = bench.path(QUEUE_RAYS, i);
-        EXPECT_LT(p.origin.y, 0.0F) << "behind the light";
-        EXPECT_GT(p.origin.y, -1e-5F);
-        // The hit's barycentrics are 0.25 and 0.5 on the triangle (6, 0, 0), (6, 0, 1), (7, 0, 1).
+        EXPECT_LT(p.origin.y, 1.0F) << "behind the light";
+        EXPECT_GT(p.origin.y, 1.0F - 1e-5F);
+        // The hit's barycentrics are 0.25 and 0.5 on the triangle (6, 1, 0), (6, 1, 1), (7, 1, 1).
         EXPECT_NEAR(p.origin.x, 6.5, 1e-5);
         EXPECT_NEAR(p.origin.z, 0.75, 1e-5);
         EXPECT_EQ(p.t, std::numeric_limits<float>::infinity());
