@@ -10,55 +10,11 @@
 #include <vector>
 
 #include "support/probe.h"
+#include "support/sobol_reference.h"
 #include "support/statistics.h"
 
 namespace wavelobe::test {
 namespace {
-
-using Word = std::uint32_t;
-
-// ---- reference: bit by bit, as the papers define it ------------------------------------------------------------
-
-Word reversed(Word x) {
-    Word y = 0;
-    for (int i = 0; i < 32; ++i) y |= (x >> i & 1u) << (31 - i);
-    return y;
-}
-
-// Generator columns of the first two Sobol dimensions (Joe and Kuo 2008): the identity, and 1 + x with m = 1.
-Word sobol(Word index, int dimension) {
-    Word column = 0x80000000u, value = 0;
-    for (; index != 0; index >>= 1) {
-        if ((index & 1u) != 0) value ^= column;
-        column = dimension == 0 ? column >> 1 : column ^ (column >> 1);
-    }
-    return value;
-}
-
-Word mixed(Word x) {
-    x = (x ^ (x >> 16)) * 0x21f0aaadu;
-    x = (x ^ (x >> 15)) * 0xd35a2d97u;
-    return x ^ (x >> 15);
-}
-
-Word next(Word seed) { return (seed ^ (seed >> 16)) * 0x7feb352du; }
-
-Word nested_uniform_scramble(Word x, Word seed) {
-    x = reversed(x);
-    x += seed;
-    x ^= x * 0x3d20adeau;
-    x *= (seed >> 16) | 1u;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return reversed(x);
-}
-
-std::array<Word, 2> reference(Word x, Word y, Word index, Word pair, Word seed) {
-    const Word shuffle = mixed(mixed(mixed(mixed(seed) + x) + y) + pair * 0x9e3779b9u);
-    const Word seed1 = next(shuffle), seed2 = next(seed1);
-    const Word shuffled = nested_uniform_scramble(index, shuffle);
-    return {nested_uniform_scramble(sobol(shuffled, 0), seed1) >> 8, nested_uniform_scramble(sobol(shuffled, 1), seed2) >> 8};
-}
 
 // ---- the sampler ---------------------------------------------------------------------------------------------
 
@@ -121,7 +77,7 @@ TEST(Sampler, FollowsTheReference) {
     for (Word seed : {0u, 1u, 0xdeadbeefu}) {
         const Samples s = sample(where, seed);
         for (std::size_t i = 0; i < where.x.size(); ++i) {
-            const auto expected = reference(where.x[i], where.y[i], where.index[i], where.pair[i], seed);
+            const auto expected = reference_pair(where.x[i], where.y[i], where.index[i], where.pair[i], seed);
             ASSERT_EQ(s.a(i), expected[0]) << i;
             ASSERT_EQ(s.b(i), expected[1]) << i;
             // A multiple of 2^-24 below one.
@@ -287,26 +243,6 @@ TEST(Sampler, NeighboursAreIndependent) {
 }
 
 // ---- pairs of one pixel against true random scrambling -----------------------------------------------------------------
-
-// SplitMix64 (Steele, Lea, Flood 2014).
-std::uint64_t strong_hash(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
-
-// Owen's scrambling by its definition: each bit from `highest` to `lowest` flips at random, independently for each value of
-// the bits above it.
-Word owen_scramble(Word x, std::uint64_t seed, int highest, int lowest) {
-    Word result = x;
-    for (int bit = highest; bit >= lowest; --bit) {
-        const std::uint64_t above = std::uint64_t{x} >> (bit + 1);
-        const auto node = strong_hash(seed * 64 + static_cast<std::uint64_t>(bit)) + above;
-        result ^= static_cast<Word>(strong_hash(node) & 1u) << bit;
-    }
-    return result;
-}
 
 constexpr Word grid_samples = 256;  // an average of one a cell of a 16 by 16 grid
 
