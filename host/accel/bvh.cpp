@@ -81,10 +81,14 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float po
             if (pa <= position) below.extend(a);
             if (pa >= position) above.extend(a);
             if ((pa < position && pb > position) || (pa > position && pb < position)) {
-                glm::vec3 crossing = a + (b - a) * ((position - pa) / (pb - pa));
-                crossing[dimension] = position;
-                below.extend(crossing);
-                above.extend(crossing);
+                const glm::vec3 crossing = a + (b - a) * ((position - pa) / (pb - pa));
+                // Six roundings of at most these magnitudes: bounds that are short of them would leave a gap.
+                const glm::vec3 margin = 6.0F * std::numeric_limits<float>::epsilon() * (glm::abs(a) + glm::abs(b));
+                for (glm::vec3 corner : {crossing - margin, crossing + margin}) {
+                    corner[dimension] = position;
+                    below.extend(corner);
+                    above.extend(corner);
+                }
             }
         }
         l = {glm::max(below.lower, l.lower), glm::min(below.upper, l.upper)};

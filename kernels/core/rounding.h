@@ -12,17 +12,18 @@
 
 // Moves each coordinate one float further in the direction of `offset`.
 INLINE Float round_along(Float x, Float offset) {
-    Int grows = (x < 0.0f) == (offset < 0.0f); // the move goes away from zero
-    UInt bits = as_UInt(x);
-    UInt away = bits + (UInt)1u;
-    UInt towards = SELECT((bits & (UInt)0x7fffffffu) == (UInt)0u, bits, bits - (UInt)1u);
-    return SELECT(offset == 0.0f, x, as_Float(SELECT(grows, away, towards)));
+    // Zero counts as on the side of the offset, so that it leaves it.
+    UInt bits = SELECT(x == 0.0f, as_UInt(offset) & (UInt)0x80000000u, as_UInt(x));
+    Int grows = (x == 0.0f) | ((x < 0.0f) == (offset < 0.0f)); // the move goes away from zero
+    Float moved = as_Float(SELECT(grows, bits + (UInt)1u, bits - (UInt)1u));
+    return SELECT(offset == 0.0f, x, moved);
 }
 
 // The origin of a ray that leaves `p` (known within +-error) on the side of the surface that `direction` points to.
 // `normal` is the unit geometric normal, on either side.
 INLINE Vec3 offset_ray_origin(Vec3 p, Vec3 error, Vec3 normal, Vec3 direction) {
-    Float d = dot3(absolute(normal), error);
+    // Lengthened by its own three roundings, those of the offset, and what the normal may lack of unit length (squared).
+    Float d = dot3(absolute(normal), error) * (1.0f + GAMMA(8));
     d = SELECT(dot3(normal, direction) < 0.0f, -d, d);
     Vec3 offset = scale(normal, d);
     Vec3 o = add(p, offset);

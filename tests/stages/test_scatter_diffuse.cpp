@@ -129,7 +129,8 @@ TEST_P(ScatterDiffuse, WeighsTheLightSample) {
         EXPECT_GE(end.y, 1.0 - 1e-5);
         EXPECT_LE(end.y, 2.0 + 1e-5);
         EXPECT_LT(s.t, distance) << "the light itself would be in the way";
-        EXPECT_GT(s.t, distance * (1.0 - stage_rounding));
+        // Both ends are moved by 7 roundings of coordinates up to 3, and the reach is 32 of the distance shorter.
+        EXPECT_GT(s.t, distance - (2 * 7 * 3 + 32 * distance) * 0x1p-24 - distance * stage_rounding);
         const double light_pdf = distance * distance / direction.z;  // area 1
         const double lobe_pdf = direction.z / pi;
         const double weight = light_pdf * light_pdf / (light_pdf * light_pdf + lobe_pdf * lobe_pdf);
