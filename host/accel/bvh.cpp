@@ -82,8 +82,8 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float po
             if (pa >= position) above.extend(a);
             if ((pa < position && pb > position) || (pa > position && pb < position)) {
                 const glm::vec3 crossing = a + (b - a) * ((position - pa) / (pb - pa));
-                // Six roundings of at most these magnitudes: bounds that are short of them would leave a gap.
-                const glm::vec3 margin = 6.0F * std::numeric_limits<float>::epsilon() * (glm::abs(a) + glm::abs(b));
+                // Six roundings, each half an epsilon, of at most these magnitudes: bounds that are short of them would leave a gap.
+                const glm::vec3 margin = 3.0F * std::numeric_limits<float>::epsilon() * (glm::abs(a) + glm::abs(b));
                 for (glm::vec3 corner : {crossing - margin, crossing + margin}) {
                     corner[dimension] = position;
                     below.extend(corner);

@@ -119,6 +119,15 @@ INLINE Int mask_of_bits(uint bits) {
 
 INLINE int any_lane(Int m) { return lane_bits(m) != 0u; }
 
+// Index of the lowest set bit; `bits` is not zero. (Checking tools interpret code for SPIR, and know no such instruction.)
+INLINE uint lowest_bit(uint bits) {
+#ifdef __SPIR__
+    return popcount((bits & (0u - bits)) - 1u);
+#else
+    return (uint)__builtin_ctz(bits);
+#endif
+}
+
 // ---- unaligned access to LANES consecutive values ------------------------------------------------
 
 typedef Float __attribute__((aligned(4))) FloatUnaligned;

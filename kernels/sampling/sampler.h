@@ -18,7 +18,11 @@ INLINE UInt reverse_bits(UInt x) {
     x = ((x >> 2) & (UInt)0x33333333u) | ((x & (UInt)0x33333333u) << 2);
     x = ((x >> 4) & (UInt)0x0f0f0f0fu) | ((x & (UInt)0x0f0f0f0fu) << 4);
     x = ((x >> 8) & (UInt)0x00ff00ffu) | ((x & (UInt)0x00ff00ffu) << 8);
+#ifdef __SPIR__ // tools that interpret code for SPIR lack the reversal that a compiler recognises in the other form
+    return rotate(x, (UInt)16u);
+#else
     return (x >> 16) | (x << 16);
+#endif
 }
 
 // A bijection in which each bit of the result depends on every bit of x: the multiply-xorshift finaliser of MurmurHash3

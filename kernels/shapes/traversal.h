@@ -68,7 +68,7 @@ INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float
     return lane_bits8(enter <= leave);
 }
 
-#define POP_LOWEST_BIT(mask, index) uint index = (uint)__builtin_ctz(mask); mask &= mask - 1u
+#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
 

@@ -1,5 +1,7 @@
-// Scenes without a hierarchy: a group of rays against every triangle, beside the single-ray traversal of the same triangles.
+// LANES rays against every triangle of a small scene: the same demands as on the hierarchy.
 #include <gtest/gtest.h>
+
+#include <cstring>
 
 #include "accel/few_triangles.h"
 #include "support/ray_sets.h"
@@ -7,124 +9,161 @@
 namespace wavelobe::test {
 namespace {
 
-constexpr const char* source = R"(
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// One work-item a group of 16 rays, at any width.
+const char* const source = R"(
 #include "shapes/few_triangles.h"
 
-typedef struct { float t, u, v; uint slot, any; } TestHit;
+#define RAY(k) load(rays + (size_t)(k) * count + i)
 
-INLINE Float ray_field(global const float *rays, UInt ray, uint field) { return gather(rays + field, ray * 7u); }
-
-kernel void trace(global const float *vertices, uint vertex_count, global const struct FewTriangle *triangles,
-                  uint triangle_count, global const float *rays, global TestHit *hits) {
-    FewTriangles few = {vertices, triangles, vertex_count, triangle_count};
-    UInt i = LANE_INDEX + (UInt)(uint)(get_global_id(0) * LANES);
-    Vec3 origin = vec3(ray_field(rays, i, 0u), ray_field(rays, i, 1u), ray_field(rays, i, 2u));
-    Vec3 direction = vec3(ray_field(rays, i, 3u), ray_field(rays, i, 4u), ray_field(rays, i, 5u));
-    Float limit = ray_field(rays, i, 6u);
-    LaneHit h = closest_of_few(few, origin, direction, limit);
-    Int any = any_of_few(few, origin, direction, limit, TRUE_MASK);
-    global float *out = (global float *)hits;
-    const uint all = (1u << (LANES - 1)) * 2u - 1u;
-    scatter(out, i * 5u, h.t, all);
-    scatter(out + 1, i * 5u, h.u, all);
-    scatter(out + 2, i * 5u, h.v, all);
-    scatter(out + 3, i * 5u, as_Float(h.slot), all);
-    scatter(out + 4, i * 5u, as_Float(SELECT(any, (UInt)1u, (UInt)0u)), all);
+kernel void trace(global const float *vertices, global const struct FewTriangle *triangles, uint vertex_count,
+                  uint triangle_count, global const float *rays, uint count, global float *hits) {
+    FewTriangles geometry = {vertices, triangles, vertex_count, triangle_count};
+    uint first = (uint)get_global_id(0) * 16u;
+    for (uint i = first; i < first + 16u; i += LANES) {
+        Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
+        LaneHit hit = closest_of_few(geometry, origin, direction, RAY(6));
+        Int any = any_of_few(geometry, origin, direction, RAY(6), TRUE_MASK);
+        store(hits + i, hit.t);
+        store(hits + count + i, hit.u);
+        store(hits + 2 * count + i, hit.v);
+        store(hits + 3 * count + i, as_Float(hit.slot));
+        store(hits + 4 * count + i, as_Float(SELECT(any, (UInt)1u, (UInt)0u)));
+    }
 }
 )";
 
-Bvh hierarchy(const Triangles& triangles) { return build_bvh(triangles, {}, BvhQuality::best, 2); }
+class FewProbe {
+public:
+    explicit FewProbe(int lanes = 16, bool portable = false)
+        : probe_(source, {.lanes = lanes, .defines = portable ? "-DWAVELOBE_PORTABLE" : ""}) {}
 
-std::vector<TestHit> trace_few(const Bvh& bvh, std::vector<TestRay> rays, int lanes = 16) {
-    const FewTriangleSet few = find_few_triangles(bvh);
-    EXPECT_FALSE(few.triangles.empty());
-    const std::size_t count = rays.size();
-    rays.resize((count + 15) / 16 * 16, rays.back());
-    std::vector<TestHit> hits(rays.size());
-    const auto vertex_count = static_cast<cl_uint>(few.vertices.size() / 3);
-    const auto triangle_count = static_cast<cl_uint>(few.triangles.size());
-    const std::vector<TestRay>& input = rays;
-    Probe(source, {.lanes = lanes, .defines = ""})
-        .run("trace", rays.size() / static_cast<std::size_t>(lanes), few.vertices, vertex_count, few.triangles,
-             triangle_count, input, hits);
-    hits.resize(count);
-    return hits;
-}
-
-// Whether a triangle is hit beyond doubt: not at an edge, and not so near that it may be the surface the ray starts from.
-// The bound on a distance is up to four times larger after a rotation than after the shear of the reference.
-bool certain(const TestRay& ray, const TestHit& hit, const Bvh& bvh, const Triangles& triangles) {
-    if (hit.slot == HIT_NONE) return false;
-    const ReferenceHit reference = reference_hit(ray, triangles[primitive_of(bvh, hit.slot)]);
-    return reference.certain && reference.t > 2.0 * 4.0 * reference.t_error;
-}
-
-// Both traversals round in their own way: they may differ where a ray touches an edge or starts on a surface, and there only.
-void expect_agreement(const Triangles& triangles, const std::vector<TestRay>& rays, double scale) {
-    const Bvh bvh = hierarchy(triangles);
-    const std::vector<TestHit> few = trace_few(bvh, rays);
-    const std::vector<TestHit> single = TraversalProbe().trace(bvh, rays);
-    std::size_t found = 0;
-    std::size_t doubtful = 0;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const bool same = (few[i].slot == HIT_NONE) == (single[i].slot == HIT_NONE) &&
-                          (few[i].slot == HIT_NONE || std::abs(few[i].t - single[i].t) <= 1e-5 * (single[i].t + scale)) &&
-                          few[i].any == single[i].any;
-        found += few[i].slot != HIT_NONE ? 1 : 0;
-        if (same) continue;
-        ++doubtful;
-        EXPECT_FALSE(certain(rays[i], few[i], bvh, triangles) && certain(rays[i], single[i], bvh, triangles))
-            << "ray " << i << ": " << few[i].t << " in slot " << few[i].slot << ", not " << single[i].t << " in "
-            << single[i].slot;
+    std::vector<TestHit> trace(const FewTriangleSet& few, const std::vector<TestRay>& rays) {
+        const std::size_t count = (rays.size() + 15) / 16 * 16;
+        std::vector<float> packed(7 * count, 0.0F);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                packed[k * count + i] = rays[i].origin[static_cast<glm::length_t>(k)];
+                packed[(3 + k) * count + i] = rays[i].direction[static_cast<glm::length_t>(k)];
+            }
+            packed[6 * count + i] = rays[i].limit;
+        }
+        std::vector<float> hits(5 * count);
+        const auto vertex_count = static_cast<cl_uint>(few.vertices.size() / 3);
+        const auto triangle_count = static_cast<cl_uint>(few.triangles.size());
+        const auto ray_count = static_cast<cl_uint>(count);
+        const std::vector<float> vertices = few.vertices.empty() ? std::vector<float>(3) : few.vertices;
+        const std::vector<FewTriangle> triangles = few.triangles.empty() ? std::vector<FewTriangle>(1) : few.triangles;
+        probe_.run("trace", count / 16, vertices, triangles, vertex_count, triangle_count, packed, ray_count, hits);
+        std::vector<TestHit> out(rays.size());
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            out[i].t = hits[i];
+            out[i].u = hits[count + i];
+            out[i].v = hits[2 * count + i];
+            std::memcpy(&out[i].slot, &hits[3 * count + i], sizeof(float));
+            std::memcpy(&out[i].any, &hits[4 * count + i], sizeof(float));
+        }
+        return out;
     }
-    EXPECT_GT(found, rays.size() / 20) << "rays that hit nothing test nothing";
-    EXPECT_LE(doubtful, rays.size() / 10000);
+
+private:
+    Probe probe_;
+};
+
+FewProbe& probe() {
+    static FewProbe instance;
+    return instance;
 }
 
-TEST(FewTriangles, AgreeWithTheHierarchy) {
-    expect_agreement(triangle_soup(40, 1.0F, 1.0F, {}, 1), random_rays(100000, 1.0F, {}, 2), 1.0);
-    expect_agreement(triangle_soup(40, 0.5F, 1e-6F, {}, 3), random_rays(100000, 1e-6F, {}, 4), 1e-6);
-    expect_agreement(triangle_soup(40, 0.5F, 1e6F, {}, 5), random_rays(100000, 1e6F, {}, 6), 1e6);
+struct SmallScene {
+    explicit SmallScene(const Triangles& t) : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::best, 1)), few(find_few_triangles(bvh)) {
+        EXPECT_EQ(few.triangles.size(), triangles.size());
+    }
+    Triangles triangles;
+    Bvh bvh;
+    FewTriangleSet few;
+};
+
+struct Soup {
+    const char* name;
+    float size;
+    float scale;
+    glm::vec3 offset;
+};
+
+void PrintTo(const Soup& soup, std::ostream* out) { *out << soup.name; }
+
+class FewSoups : public testing::TestWithParam<Soup> {};
+
+TEST_P(FewSoups, AgreeWithBruteForce) {
+    const Soup& soup = GetParam();
+    // Of 42 triangles that share no corner: 126 vertices of at most 128.
+    const SmallScene scene(triangle_soup(42, soup.size, soup.scale, soup.offset, 1));
+    const std::vector<TestRay> rays = random_rays(100000, soup.scale, soup.offset, 2);
+    const std::vector<TestHit> hits = probe().trace(scene.few, rays);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::string fault = fault_of_hit(rays[i], hits[i], scene.bvh, scene.triangles, Projection::rotation);
+        ASSERT_EQ(fault, "") << "ray " << i;
+        if (hits[i].slot != HIT_NONE) ++found;
+    }
+    EXPECT_GT(found, rays.size() / 20);
 }
 
-TEST(FewTriangles, SameBitsAtEveryLaneWidth) {
-    const Triangles triangles = triangle_soup(40, 1.0F, 1.0F, {}, 7);
-    const Bvh bvh = hierarchy(triangles);
-    const std::vector<TestRay> rays = random_rays(20000, 1.0F, {}, 8);
-    const std::vector<TestHit> sixteen = trace_few(bvh, rays, 16);
-    EXPECT_TRUE(trace_few(bvh, rays, 8) == sixteen);
-    EXPECT_TRUE(trace_few(bvh, rays, 1) == sixteen);
+INSTANTIATE_TEST_SUITE_P(All, FewSoups,
+                         testing::Values(Soup{"large", 1.0F, 1.0F, {}}, Soup{"small", 0.3F, 1.0F, {}},
+                                         Soup{"tiny_scale", 0.5F, 1e-6F, {}}, Soup{"huge_scale", 0.5F, 1e6F, {}},
+                                         Soup{"far_away", 0.5F, 1.0F, {1000.0F, -3000.0F, 500.0F}}),
+                         [](const auto& soup) { return soup.param.name; });
+
+TEST(FewTriangles, SameBitsAtEveryWidth) {
+    const SmallScene scene(triangle_soup(42, 0.5F, 1.0F, {}, 3));
+    const std::vector<TestRay> rays = random_rays(20000, 1.0F, {}, 4);
+    const std::vector<TestHit> hits = probe().trace(scene.few, rays);
+    EXPECT_EQ(FewProbe(1).trace(scene.few, rays), hits);
+    EXPECT_EQ(FewProbe(8).trace(scene.few, rays), hits);
+    EXPECT_EQ(FewProbe(16, true).trace(scene.few, rays), hits) << "portable twins";
 }
 
 void expect_nothing_escapes(const ClosedMesh& mesh, float inner_half, const glm::vec3& center) {
-    const Bvh bvh = hierarchy(mesh.triangles());
+    const SmallScene scene(mesh.triangles());
+    const std::vector<TestRay> rays = rays_from_inside(mesh, inner_half, center, 300000);
     std::size_t escaped = 0;
-    for (const TestHit& hit : trace_few(bvh, rays_from_inside(mesh, inner_half, center, 300000))) {
-        escaped += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
-    }
+    for (const TestHit& hit : probe().trace(scene.few, rays)) escaped += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
     EXPECT_EQ(escaped, 0U);
 }
 
-TEST(FewTriangles, NothingEscapesAClosedMesh) {
-    expect_nothing_escapes(cube_mesh(2), 0.9F, {});
-    expect_nothing_escapes(sphere_mesh(1, 1.0F, {}), 0.4F, {});
-    expect_nothing_escapes(sphere_mesh(1, 1e-5F, {}), 4e-6F, {});
-    expect_nothing_escapes(sphere_mesh(1, 3.0F, {1234.5F, -777.7F, 4321.1F}), 1.2F, {1234.5F, -777.7F, 4321.1F});
+TEST(FewTriangles, ClosedCubeIsWatertight) { expect_nothing_escapes(cube_mesh(2), 0.9F, {}); }
+TEST(FewTriangles, ClosedSphereIsWatertight) { expect_nothing_escapes(sphere_mesh(1, 1.0F, {}), 0.4F, {}); }
+TEST(FewTriangles, SmallSphereIsWatertight) { expect_nothing_escapes(sphere_mesh(1, 1e-5F, {}), 4e-6F, {}); }
+TEST(FewTriangles, DistantSphereIsWatertight) {
+    const glm::vec3 center{1234.5F, -777.7F, 4321.1F};
+    expect_nothing_escapes(sphere_mesh(1, 3.0F, center), 1.2F, center);
 }
 
 TEST(FewTriangles, RaysThatAreNotNumbersMiss) {
-    const Bvh bvh = hierarchy(triangle_soup(40, 1.0F, 1.0F, {}, 9));
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const TestHit& hit : trace_few(bvh, {{{nan, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {nan, 0, 1}}, {{0, 0, 0}, {0, 0, 1}, nan}})) {
-        EXPECT_EQ(hit.slot, HIT_NONE);
-        EXPECT_EQ(hit.any, 0U);
+    const SmallScene scene(triangle_soup(42, 0.5F, 1.0F, {}, 5));
+    std::vector<TestRay> rays;
+    Generator random(6);
+    for (int i = 0; i < 2100; ++i) {
+        TestRay ray{uniform_in_cube(random, 1.0F), uniform_direction(random)};
+        const float bad = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);
+        if (i % 7 < 3) {
+            ray.origin[i % 7] = bad;
+        } else if (i % 7 < 6) {
+            ray.direction[i % 7 - 3] = bad;
+        } else {
+            ray.limit = i % 3 == 0 ? nan : -1.0F;
+        }
+        rays.push_back(ray);
     }
-}
-
-TEST(FewTriangles, LargerScenesKeepTheirHierarchy) {
-    EXPECT_TRUE(find_few_triangles(hierarchy(triangle_soup(FEW_TRIANGLES_MAX + 1, 0.1F, 1.0F, {}, 10))).triangles.empty());
-    EXPECT_EQ(find_few_triangles(hierarchy(cube_mesh(1).triangles())).triangles.size(), 12U);
-    EXPECT_EQ(find_few_triangles(hierarchy(cube_mesh(1).triangles())).vertices.size(), std::size_t{3} * 8);
+    rays.push_back({{0, 0, 0}, {0, 0, 0}});
+    for (const TestHit& hit : probe().trace(scene.few, rays)) {
+        ASSERT_EQ(hit.slot, HIT_NONE);
+        ASSERT_EQ(hit.any, 0U);
+    }
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ struct Soup {
     glm::vec3 offset;
 };
 
+void PrintTo(const Soup& soup, std::ostream* out) { *out << soup.name; }
+
 class Soups : public testing::TestWithParam<Soup> {};
 
 TEST_P(Soups, AgreeWithBruteForce) {

@@ -43,7 +43,8 @@ struct TestShadowRay {
 class StageBench {
 public:
     // `few`: rays are tested against all triangles, without the hierarchy.
-    explicit StageBench(const Scene& scene, int lanes = 16, int slots = 64, bool few = false)
+    // `extra`: kernels of the test's own, after those of the program.
+    explicit StageBench(const Scene& scene, int lanes = 16, int slots = 64, bool few = false, const std::string& extra = {})
         : scene_(flatten_scene(scene)), buffers_(device()) {
         const Bvh bvh = build_scene_bvh(scene_, 1);
         for (const TriangleBlock& block : bvh.blocks) {
@@ -54,16 +55,19 @@ public:
         scene_.parameters.few_triangle_count = static_cast<std::uint32_t>(set.triangles.size());
         scene_.parameters.few_vertex_count = static_cast<std::uint32_t>(set.vertices.size() / 3);
         buffers_.upload(scene_, bvh, set, 1, block_words(scene_.features, slots));
-        program_.emplace(device(), program_source(scene_.features, lanes, slots) + layout_source, "stage.cl");
+        program_.emplace(device(), program_source(scene_.features, lanes, slots) + layout_source + extra, "stage.cl");
         read_layout();
         header().path_count = TILE_PIXELS;
         header().next_path = TILE_PIXELS;
         header().nonfinite_path = WAVELOBE_NONE;
     }
 
-    void run(const char* stage) {
+    // `more`: buffers beside those of the scene, for kernels of the test's own.
+    void run(const char* stage, const BufferTable& more = {}) {
+        BufferTable table = buffers_.table();
+        table.insert(more.begin(), more.end());
         Kernel kernel(*program_, stage);
-        kernel.bind(buffers_.table());
+        kernel.bind(table);
         kernel.launch(device(), 1);
         device().finish();
     }

@@ -67,10 +67,9 @@ kernel void trace(global const uchar *nodes, global const uchar *blocks, global 
 
 // ---- reference ------------------------------------------------------------------------------------------
 
-// A ray against a triangle in double, with bounds on what the float test of kernels/shapes/triangle_block.h may be off by.
-// Its inputs are floats, so that double itself is as good as exact. The bounds follow Pharr, Jakob, Humphreys,
-// "Physically Based Rendering", "Managing Rounding Error": relative gamma(n) = n 2^-24 for n roundings, on the largest
-// magnitudes of the sheared coordinates.
+// A ray against a triangle in double, with bounds on what the float tests may be off by. Their inputs are floats, so that
+// double itself is as good as exact. The bounds follow Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing
+// Rounding Error": relative gamma(n) = n 2^-24 for n roundings, on the largest magnitudes of the coordinates around the ray.
 struct ReferenceHit {
     bool certain = false;   // inside beyond doubt
     bool possible = false;  // inside or within rounding of an edge
@@ -80,26 +79,53 @@ struct ReferenceHit {
 
 inline double gamma_bound(int n) { return n * 0x1p-24 / (1.0 - n * 0x1p-24); }
 
-inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& triangle) {
+// How the coordinates around the ray come about.
+enum class Projection {
+    shear,    // kernels/shapes/triangle_block.h
+    rotation  // kernels/shapes/few_triangles.h
+};
+
+// Corners with the ray as the z axis, and bounds on the errors of their coordinates.
+struct ProjectedTriangle {
+    glm::dvec3 p[3];
+    glm::dvec3 most{0.0};
+    glm::dvec3 error{0.0};
+};
+
+inline ProjectedTriangle project(const TestRay& ray, const TriangleVertices& triangle, Projection projection) {
     const glm::dvec3 d{ray.direction};
     const glm::dvec3 size = glm::abs(d);
     const glm::length_t kz = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
     const glm::length_t kx = (kz + 1) % 3;
     const glm::length_t ky = (kz + 2) % 3;
-    glm::dvec3 p[3];
-    glm::dvec3 most{0.0};
+    // As frame_of_normal of kernels/core/vector.h.
+    const double sign = d.z < 0.0 ? -1.0 : 1.0;
+    const double a = -1.0 / (sign + d.z);
+    const glm::dvec3 s{1.0 + sign * d.x * d.x * a, sign * d.x * d.y * a, -sign * d.x};
+    const glm::dvec3 t{d.x * d.y * a, sign + d.y * d.y * a, -d.y};
+    ProjectedTriangle out;
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec3 q = glm::dvec3(triangle[i]) - glm::dvec3(ray.origin);
-        p[i] = {q[kx] - d[kx] / d[kz] * q[kz], q[ky] - d[ky] / d[kz] * q[kz], q[kz] / d[kz]};
-        most = glm::max(most, glm::abs(p[i]));
+        out.p[i] = projection == Projection::shear
+                       ? glm::dvec3{q[kx] - d[kx] / d[kz] * q[kz], q[ky] - d[ky] / d[kz] * q[kz], q[kz] / d[kz]}
+                       : glm::dvec3{glm::dot(q, s), glm::dot(q, t), glm::dot(q, d)};
+        out.most = glm::max(out.most, glm::abs(out.p[i]));
     }
+    if (projection == Projection::shear) {
+        out.error = gamma_bound(5) * glm::dvec3{out.most.x + out.most.z, out.most.y + out.most.z, out.most.z};
+    } else {
+        // A subtraction, four roundings of the frame, and a product of three terms, on vectors of at most this length.
+        out.error = glm::dvec3(std::sqrt(3.0) * gamma_bound(9) * (out.most.x + out.most.y + out.most.z));
+    }
+    return out;
+}
+
+inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& triangle, Projection projection) {
+    const ProjectedTriangle v = project(ray, triangle, projection);
     const auto area = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.y - a.y * b.x; };
-    const glm::dvec3 w{area(p[2], p[1]), area(p[0], p[2]), area(p[1], p[0])};
+    const glm::dvec3 w{area(v.p[2], v.p[1]), area(v.p[0], v.p[2]), area(v.p[1], v.p[0])};
     const double det = w.x + w.y + w.z;
-    const double dx = gamma_bound(5) * (most.x + most.z);
-    const double dy = gamma_bound(5) * (most.y + most.z);
-    const double dz = gamma_bound(5) * most.z;
-    const double dw = 2.0 * (gamma_bound(2) * most.x * most.y + dy * most.x + dx * most.y);
+    const double dw = 2.0 * (gamma_bound(2) * v.most.x * v.most.y + v.error.y * v.most.x + v.error.x * v.most.y);
     const double w_most = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
     const double least = std::min({w.x, w.y, w.z});
     const double largest = std::max({w.x, w.y, w.z});
@@ -108,8 +134,8 @@ inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& tr
     hit.possible = least >= -dw || largest <= dw;
     // The sum of three areas is off by three times their error and its own roundings.
     if (std::abs(det) <= 3.0 * dw + gamma_bound(3) * w_most) return hit;
-    hit.t = (w.x * p[0].z + w.y * p[1].z + w.z * p[2].z) / det;
-    hit.t_error = 3.0 * (gamma_bound(4) * w_most * most.z + dw * most.z + dz * w_most) / (std::abs(det) - 3.0 * dw);
+    hit.t = (w.x * v.p[0].z + w.y * v.p[1].z + w.z * v.p[2].z) / det;
+    hit.t_error = 3.0 * (gamma_bound(4) * w_most * v.most.z + dw * v.most.z + v.error.z * w_most) / (std::abs(det) - 3.0 * dw);
     hit.certain = (least > dw || largest < -dw) && hit.t > 2.0 * hit.t_error;
     return hit;
 }
@@ -117,12 +143,13 @@ inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& tr
 inline std::uint32_t primitive_of(const Bvh& bvh, std::uint32_t slot) { return bvh.blocks[slot / 8].primitive[slot % 8]; }
 
 // Empty if the hit is one that the ray may have; otherwise what is wrong with it.
-inline std::string fault_of_hit(const TestRay& ray, const TestHit& hit, const Bvh& bvh, const Triangles& triangles) {
+inline std::string fault_of_hit(const TestRay& ray, const TestHit& hit, const Bvh& bvh, const Triangles& triangles,
+                                Projection projection = Projection::shear) {
     const bool found = hit.slot != HIT_NONE;
     if (!found && hit.t != ray.limit) return "a miss leaves t at the limit";
     double found_error = 0.0;
     if (found) {
-        const ReferenceHit own = reference_hit(ray, triangles[primitive_of(bvh, hit.slot)]);
+        const ReferenceHit own = reference_hit(ray, triangles[primitive_of(bvh, hit.slot)], projection);
         if (!own.possible) return "the ray passes beside the triangle it is said to hit";
         // A triangle seen edge-on (det lost in rounding) has no distance to compare with.
         if (own.t_error > 0.0 && std::abs(hit.t - own.t) > own.t_error) return "distance beyond its error bound";
@@ -131,7 +158,7 @@ inline std::string fault_of_hit(const TestRay& ray, const TestHit& hit, const Bv
         found_error = own.t_error;
     }
     for (const TriangleVertices& triangle : triangles) {
-        const ReferenceHit other = reference_hit(ray, triangle);
+        const ReferenceHit other = reference_hit(ray, triangle, projection);
         if (!other.certain || other.t + other.t_error >= static_cast<double>(ray.limit)) continue;
         if (hit.any == 0) return "any-hit misses a triangle";
         if (!found) return "a triangle in the way is missed";
