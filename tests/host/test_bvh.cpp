@@ -47,8 +47,8 @@ protected:
         expect_covered(w);
     }
 
-    // A primitive lies in the bounds of its leaves together, to the bit: its corners, and where the leaves' planes cut it.
-    // (Between those points it is convex.)
+    // A primitive lies in the bounds of its leaves together, to the bit: its corners, and where the leaves' planes cut
+    // it. (Between those points it is convex.)
     void expect_covered(const Walk& w) {
         for (const auto& [index, leaves] : w.triangles) {
             const TriangleVertices& v = triangles_[index];
@@ -58,7 +58,8 @@ protected:
                 ASSERT_TRUE(covered(a, leaves)) << "corner of triangle " << index;
                 for (const Bounds& leaf : leaves) {
                     for (glm::length_t axis = 0; axis < 3; ++axis) {
-                        for (const double plane : {static_cast<double>(leaf.lower[axis]), static_cast<double>(leaf.upper[axis])}) {
+                        for (const double plane :
+                             {static_cast<double>(leaf.lower[axis]), static_cast<double>(leaf.upper[axis])}) {
                             const double t = (plane - a[axis]) / (b[axis] - a[axis]);
                             if (!(t > 0.0 && t < 1.0)) continue;
                             glm::dvec3 crossing = a + (b - a) * t;
@@ -72,7 +73,8 @@ protected:
         for (const auto& [index, leaves] : w.analytics) {
             for (int corner = 0; corner < 8; ++corner) {
                 const Bounds& b = analytic_[index];
-                const glm::dvec3 p{(corner & 1 ? b.upper : b.lower).x, (corner & 2 ? b.upper : b.lower).y, (corner & 4 ? b.upper : b.lower).z};
+                const glm::dvec3 p{(corner & 1 ? b.upper : b.lower).x, (corner & 2 ? b.upper : b.lower).y,
+                                   (corner & 4 ? b.upper : b.lower).z};
                 ASSERT_TRUE(covered(p, leaves)) << "corner of analytic shape " << index;
             }
         }
@@ -132,7 +134,8 @@ private:
         int present = 0;
         for (std::size_t lane = 0; lane < BVH_WIDTH; ++lane) {
             TriangleVertices v;
-            for (std::size_t i = 0; i < 3; ++i) v[i] = {block.vertex[3 * i][lane], block.vertex[3 * i + 1][lane], block.vertex[3 * i + 2][lane]};
+            for (std::size_t i = 0; i < 3; ++i)
+                v[i] = {block.vertex[3 * i][lane], block.vertex[3 * i + 1][lane], block.vertex[3 * i + 2][lane]};
             const bool absent = v == TriangleVertices{};
             if (absent) continue;
             ++present;
@@ -200,7 +203,8 @@ TEST_P(Hierarchy, IsTheSameForAnyNumberOfThreads) {
     ASSERT_EQ(one.blocks.size(), two.blocks.size());
     ASSERT_EQ(one.nodes.size(), two.nodes.size());
     for (std::size_t i = 0; i < one.blocks.size(); ++i) {
-        ASSERT_TRUE(std::equal(std::begin(one.blocks[i].primitive), std::end(one.blocks[i].primitive), two.blocks[i].primitive));
+        ASSERT_TRUE(std::equal(std::begin(one.blocks[i].primitive), std::end(one.blocks[i].primitive),
+                               two.blocks[i].primitive));
     }
     for (std::size_t i = 0; i < one.nodes.size(); ++i) {
         ASSERT_TRUE(std::equal(std::begin(one.nodes[i].child), std::end(one.nodes[i].child), two.nodes[i].child));

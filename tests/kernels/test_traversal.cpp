@@ -135,10 +135,13 @@ TEST(Traversal, EmptySceneIsMissed) {
 TEST(Traversal, OneTriangle) {
     const Triangles triangles{{glm::vec3{0, 0, 0}, glm::vec3{1, 0, 0}, glm::vec3{0, 1, 0}}};
     const Bvh bvh = hierarchy(triangles);
-    const std::vector<TestHit> hits = probe().trace(
-        bvh, {{{0.25F, 0.5F, 2.0F}, {0, 0, -1}}, {{0.25F, 0.5F, -2.0F}, {0, 0, 1}}, {{0.75F, 0.5F, 2.0F}, {0, 0, -1}},
-              {{0.25F, 0.5F, 2.0F}, {0, 0, 1}}, {{0.25F, 0.5F, 2.0F}, {0, 0, -1}, 2.0F},
-              {{0.25F, 0.5F, 2.0F}, {0, 0, -1}, std::nextafter(2.0F, 3.0F)}});
+    const std::vector<TestHit> hits =
+        probe().trace(bvh, {{{0.25F, 0.5F, 2.0F}, {0, 0, -1}},
+                            {{0.25F, 0.5F, -2.0F}, {0, 0, 1}},
+                            {{0.75F, 0.5F, 2.0F}, {0, 0, -1}},
+                            {{0.25F, 0.5F, 2.0F}, {0, 0, 1}},
+                            {{0.25F, 0.5F, 2.0F}, {0, 0, -1}, 2.0F},
+                            {{0.25F, 0.5F, 2.0F}, {0, 0, -1}, std::nextafter(2.0F, 3.0F)}});
     const std::uint32_t slot = hits[0].slot;
     ASSERT_NE(slot, HIT_NONE);
     EXPECT_EQ(primitive_of(bvh, slot), 0U);
@@ -166,7 +169,8 @@ TEST(Traversal, DegenerateTrianglesAreMissed) {
     triangles.push_back({glm::vec3{-1, -1, 2}, glm::vec3{1, -1, 2}, glm::vec3{0, 1, 2}});
     const Bvh bvh = hierarchy(triangles);
     const std::vector<TestHit> hits = probe().trace(
-        bvh, {{{0, 0, 0}, {0, 0, 1}}, {{-2, 0, 1}, {1, 0, 0}}, {{0, 0, 0}, glm::normalize(glm::vec3{0.25F, 0.0F, 1.0F})}});
+        bvh,
+        {{{0, 0, 0}, {0, 0, 1}}, {{-2, 0, 1}, {1, 0, 0}}, {{0, 0, 0}, glm::normalize(glm::vec3{0.25F, 0.0F, 1.0F})}});
     EXPECT_EQ(hits[0].t, 2.0F);
     EXPECT_EQ(hits[1].slot, HIT_NONE);
     ASSERT_NE(hits[2].slot, HIT_NONE);
@@ -203,8 +207,8 @@ TEST(Traversal, RaysThatAreNotNumbersMiss) {
     }
 }
 
-// Origins outside by any distance, and coordinates near the ends of the range of floats: no overflow turns into a hit that
-// is not there.
+// Origins outside by any distance, and coordinates near the ends of the range of floats: no overflow turns into a hit
+// that is not there.
 TEST(Traversal, DistantOrigins) {
     const Triangles triangles = triangle_soup(200, 0.3F, 1.0F, {}, 12);
     const Bvh bvh = hierarchy(triangles);

@@ -124,7 +124,8 @@ TEST(FloorUnder, Triangle) {
     Scene scene = floor_scene();
     const glm::vec3 corners[3] = {{-0.3F, 1.0F, -0.8F}, {1.2F, 1.4F, -0.5F}, {0.2F, 0.9F, 1.1F}};
     make_emitter(add_triangle(scene, corners[0], corners[1], corners[2], add_diffuse(scene, Rgb{0})), radiance);
-    expect_mean(render(scene, 64).image, under_polygon({glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])}));
+    expect_mean(render(scene, 64).image,
+                under_polygon({glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])}));
 }
 
 // Half of it lies below the floor and is hidden.
@@ -134,14 +135,15 @@ TEST(FloorUnder, RectangleThatCrossesTheHorizon) {
     expect_mean(render(scene, 128).image, under_polygon({{2, 0, -1}, {2, 0, 1}, {2, 1.5, 1}, {2, 1.5, -1}}));
 }
 
-// Radius r at height h and distance d from the axis: E = pi L / 2 (1 - (d^2 + h^2 - r^2) / sqrt((d^2 + h^2 + r^2)^2 - 4 r^2 d^2))
-// (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-32).
+// Radius r at height h and distance d from the axis: E = pi L / 2 (1 - (d^2 + h^2 - r^2) / sqrt((d^2 + h^2 + r^2)^2 - 4
+// r^2 d^2)) (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-32).
 TEST(FloorUnder, Disk) {
     for (const double d : {0.0, 1.3}) {
         constexpr double r = 0.75;
         constexpr double h = 1.25;
         Scene scene = floor_scene();
-        make_emitter(add_disk_facing_down(scene, {static_cast<float>(d), h, 0}, r, add_diffuse(scene, Rgb{0})), radiance);
+        make_emitter(add_disk_facing_down(scene, {static_cast<float>(d), h, 0}, r, add_diffuse(scene, Rgb{0})),
+                     radiance);
         const double sum = d * d + h * h + r * r;
         const double factor = 0.5 * (1.0 - (sum - 2.0 * r * r) / std::sqrt(sum * sum - 4.0 * r * r * d * d));
         expect_mean(render(scene, 64).image, radiance_of_irradiance(glm::dvec3(radiance) * pi * factor));
@@ -215,7 +217,8 @@ TEST(FloorUnder, EnvironmentMap) {
     map.image.width = 8;
     map.image.height = 5;
     std::mt19937 random(1);
-    for (int i = 0; i < 8 * 5 * 3; ++i) map.image.rgb.push_back(std::uniform_real_distribution<float>(0.1F, 4.0F)(random));
+    for (int i = 0; i < 8 * 5 * 3; ++i)
+        map.image.rgb.push_back(std::uniform_real_distribution<float>(0.1F, 4.0F)(random));
     map.scale = 0.5F;
     map.to_world = glm::rotate(glm::mat4(1.0F), 0.7F, glm::vec3(0.3F, 0.5F, -0.8F));
     scene.emitters.emplace_back(map);
@@ -234,7 +237,8 @@ TEST(FloorUnder, LightsOfAllKindsTogether) {
     make_emitter(add_sphere(scene, {0, 2, 2}, 0.4F, black), 3.0F * radiance);
     scene.emitters.emplace_back(PointEmitter{{-1.0F, 1.0F, -1.0F}, radiance});
     scene.emitters.emplace_back(DirectionalEmitter{{0, -1, 0}, 0.5F * radiance});
-    const double quad = polygon_irradiance({{2, 0.5, -1}, {2, 0.5, 1}, {2, 1.5, 1}, {2, 1.5, -1}}, {0, 0, 0}, {0, 1, 0});
+    const double quad =
+        polygon_irradiance({{2, 0.5, -1}, {2, 0.5, 1}, {2, 1.5, 1}, {2, 1.5, -1}}, {0, 0, 0}, {0, 1, 0});
     const double sphere = 3.0 * pi * 0.16 / 8.0 * std::sqrt(0.5);
     const double point = 1.0 / std::pow(3.0, 1.5);
     expect_mean(render(scene, 256).image, radiance_of_irradiance(glm::dvec3(radiance) * (quad + sphere + point + 0.5)));

@@ -1,7 +1,7 @@
 // The same picture, bit for bit, however the work is divided.
 //
-// Threads are fixed when a process first touches OpenCL: each picture is rendered in a child process, and the parent never
-// opens a device.
+// Threads are fixed when a process first touches OpenCL: each picture is rendered in a child process, and the parent
+// never opens a device.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -40,7 +40,8 @@ void write_picture(const Scene& scene, const Division& division, const std::stri
     if (!renderer.render() || renderer.stats().nan_samples != 0) throw std::runtime_error("not all samples are there");
     const Image image = renderer.image();
     std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(image.rgb.data()), static_cast<std::streamsize>(image.rgb.size() * sizeof(float)));
+    file.write(reinterpret_cast<const char*>(image.rgb.data()),
+               static_cast<std::streamsize>(image.rgb.size() * sizeof(float)));
 }
 
 std::vector<float> picture(const Scene& scene, const Division& division) {

@@ -47,13 +47,14 @@ TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
         EXPECT_TRUE(contains(text, present)) << present;
     }
     for (const char* absent :
-         {"\"bsdf/microfacet.h\"", "\"bsdf/fresnel.h\"", "\"bsdf/rough_conductor.h\"", "\"bsdf/dielectric.h\"", "\"bsdf/mirror.h\"",
-          "\"bsdf/phong.h\"", "\"bsdf/plastic_coat.h\"", "\"lights/envmap.h\"", "\"lights/constant.h\"", "\"lights/sphere.h\"",
-          "\"lights/spot.h\"", "kernel void scatter_delta", "kernel void scatter_glossy", "kernel void shade_escaped"}) {
+         {"\"bsdf/microfacet.h\"", "\"bsdf/fresnel.h\"", "\"bsdf/rough_conductor.h\"", "\"bsdf/dielectric.h\"",
+          "\"bsdf/mirror.h\"", "\"bsdf/phong.h\"", "\"bsdf/plastic_coat.h\"", "\"lights/envmap.h\"",
+          "\"lights/constant.h\"", "\"lights/sphere.h\"", "\"lights/spot.h\"", "kernel void scatter_delta",
+          "kernel void scatter_glossy", "kernel void shade_escaped"}) {
         EXPECT_FALSE(contains(text, absent)) << absent;
     }
-    for (const char* feature : {"TEXTURES", "TEXTURED_EMITTERS", "SMOOTH_NORMALS", "UVS", "ANALYTIC", "ANISOTROPY", "TRANSMISSION",
-                                "LOBE_CHOICE", "MIXTURE", "ENVIRONMENT"}) {
+    for (const char* feature : {"TEXTURES", "TEXTURED_EMITTERS", "SMOOTH_NORMALS", "UVS", "ANALYTIC", "ANISOTROPY",
+                                "TRANSMISSION", "LOBE_CHOICE", "MIXTURE", "ENVIRONMENT"}) {
         EXPECT_TRUE(contains(text, std::string("#define HAS_") + feature + " 0\n")) << feature;
     }
 }
@@ -100,7 +101,8 @@ class Additions : public testing::TestWithParam<Addition> {};
 
 // What one element brings along is exactly what it needs.
 TEST_P(Additions, BringWhatTheyNeed) {
-    const std::string sphere = R"(<shape type="sphere"><point name="center" x="0" y="0.4" z="0"/><float name="radius" value="0.3"/>)";
+    const std::string sphere =
+        R"(<shape type="sphere"><point name="center" x="0" y="0.4" z="0"/><float name="radius" value="0.3"/>)";
     std::string element = GetParam().element;
     if (element.starts_with("<bsdf")) element = sphere + element + "</shape>";
     std::vector<std::string> found = flatten_scene(diffuse_scene(element)).features.names();
@@ -120,14 +122,18 @@ INSTANTIATE_TEST_SUITE_P(
         Addition{"diffuse_sphere", R"(<bsdf type="diffuse"/>)", {"analytic_shapes"}},
         Addition{"mirror", R"(<bsdf type="conductor"/>)", {"analytic_shapes", "lobe:mirror"}},
         Addition{"glass", R"(<bsdf type="dielectric"/>)", {"analytic_shapes", "lobe:dielectric", "transmission"}},
-        Addition{"metal", R"(<bsdf type="roughconductor"><string name="distribution" value="ggx"/></bsdf>)",
+        Addition{"metal",
+                 R"(<bsdf type="roughconductor"><string name="distribution" value="ggx"/></bsdf>)",
                  {"analytic_shapes", "lobe:rough_conductor", "ggx"}},
-        Addition{"brushed_metal",
-                 R"(<bsdf type="roughconductor"><float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.2"/></bsdf>)",
-                 {"analytic_shapes", "lobe:rough_conductor", "beckmann", "anisotropy", "uvs"}},
-        Addition{"plastic", R"(<bsdf type="plastic"/>)",
+        Addition{
+            "brushed_metal",
+            R"(<bsdf type="roughconductor"><float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.2"/></bsdf>)",
+            {"analytic_shapes", "lobe:rough_conductor", "beckmann", "anisotropy", "uvs"}},
+        Addition{"plastic",
+                 R"(<bsdf type="plastic"/>)",
                  {"analytic_shapes", "lobe:plastic_coat", "lobe:plastic_base", "lobe_choice"}},
-        Addition{"checkerboard", R"(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf>)",
+        Addition{"checkerboard",
+                 R"(<bsdf type="diffuse"><texture type="checkerboard" name="reflectance"/></bsdf>)",
                  {"analytic_shapes", "textures", "uvs"}}),
     [](const auto& addition) { return addition.param.name; });
 

@@ -37,7 +37,8 @@ Looked quad_seen_from(double degrees, MaterialModel model, double azimuth_degree
 ::Material device_material(const Scene& scene) { return flatten_scene(scene).materials.at(0); }
 
 RoughConductor rough_copper(Distribution distribution, float alpha_u, float alpha_v) {
-    return {{0.2F, 0.92F, 1.1F}, {3.9F, 2.45F, 2.2F}, constant(Rgb{0.9F, 1.0F, 0.8F}), constant(alpha_u), constant(alpha_v), distribution};
+    return {{0.2F, 0.92F, 1.1F}, {3.9F, 2.45F, 2.2F}, constant(Rgb{0.9F, 1.0F, 0.8F}),
+            constant(alpha_u),   constant(alpha_v),   distribution};
 }
 
 RoughDielectric rough_glass(Distribution distribution, float alpha) {
@@ -46,7 +47,9 @@ RoughDielectric rough_glass(Distribution distribution, float alpha) {
 
 Plastic red_plastic(bool nonlinear) { return {1.5F, constant(Rgb{0.7F, 0.2F, 0.05F}), constant(0.9F), nonlinear}; }
 
-Phong shiny_phong(float exponent) { return {constant(Rgb{0.3F, 0.2F, 0.1F}), constant(Rgb{0.2F, 0.3F, 0.4F}), constant(exponent)}; }
+Phong shiny_phong(float exponent) {
+    return {constant(Rgb{0.3F, 0.2F, 0.1F}), constant(Rgb{0.2F, 0.3F, 0.4F}), constant(exponent)};
+}
 
 using Evals = std::vector<ReferenceEval>;
 
@@ -74,7 +77,8 @@ TEST_P(DirectionalLight, ShowsTheLobesValue) {
     const ::Material material = device_material(looked.scene);
     const auto value = [&](const glm::dvec3& wi, const glm::dvec3& light) {
         glm::dvec3 sum{0.0};
-        for (const ReferenceEval& lobe : lit.lobes) sum += lobe(material, glm::normalize(wi), glm::normalize(light)).f_cos;
+        for (const ReferenceEval& lobe : lit.lobes)
+            sum += lobe(material, glm::normalize(wi), glm::normalize(light)).f_cos;
         return sum;
     };
     const glm::dvec3 expected = value(looked.wi, wo);
@@ -96,7 +100,8 @@ TEST_P(DirectionalLight, ShowsTheLobesValue) {
     for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
         for (int c = 0; c < 3; ++c) {
             const double e = radiance[c];
-            ASSERT_NEAR(pixel(image, i)[c], expected[c] * e, e * (change[c] + path_rounding * expected[c])) << "pixel " << i;
+            ASSERT_NEAR(pixel(image, i)[c], expected[c] * e, e * (change[c] + path_rounding * expected[c]))
+                << "pixel " << i;
         }
     }
 }
@@ -106,15 +111,20 @@ const glm::vec3 below{-0.3F, -1.0F, 0.1F};
 
 INSTANTIATE_TEST_SUITE_P(
     All, DirectionalLight,
-    testing::Values(Lit{"ggx", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, 40, above},
-                    Lit{"ggx_anisotropic", rough_copper(Distribution::ggx, 0.1F, 0.4F), {reference_rough_conductor}, 40, above},
-                    Lit{"beckmann", rough_copper(Distribution::beckmann, 0.3F, 0.3F), {reference_rough_conductor}, 55, above},
-                    Lit{"glass_reflects", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, 40, above},
-                    Lit{"glass_refracts_down", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, 30, below},
-                    Lit{"glass_refracts_up", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, 150, glm::vec3{-0.6F, 1.0F, 0.3F}},
-                    Lit{"plastic", red_plastic(false), {reference_plastic_base}, 40, above},
-                    Lit{"plastic_nonlinear", red_plastic(true), {reference_plastic_base}, 60, above},
-                    Lit{"phong", shiny_phong(20.0F), {reference_phong, reference_lambert}, 40, glm::vec3{-0.6F, 1.0F, 0.4F}}),
+    testing::Values(
+        Lit{"ggx", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, 40, above},
+        Lit{"ggx_anisotropic", rough_copper(Distribution::ggx, 0.1F, 0.4F), {reference_rough_conductor}, 40, above},
+        Lit{"beckmann", rough_copper(Distribution::beckmann, 0.3F, 0.3F), {reference_rough_conductor}, 55, above},
+        Lit{"glass_reflects", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, 40, above},
+        Lit{"glass_refracts_down", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, 30, below},
+        Lit{"glass_refracts_up",
+            rough_glass(Distribution::ggx, 0.4F),
+            {reference_rough_dielectric},
+            150,
+            glm::vec3{-0.6F, 1.0F, 0.3F}},
+        Lit{"plastic", red_plastic(false), {reference_plastic_base}, 40, above},
+        Lit{"plastic_nonlinear", red_plastic(true), {reference_plastic_base}, 60, above},
+        Lit{"phong", shiny_phong(20.0F), {reference_phong, reference_lambert}, 40, glm::vec3{-0.6F, 1.0F, 0.4F}}),
     [](const auto& lit) { return lit.param.name; });
 
 // ---- an even environment: how much a material reflects and transmits in all -----------------------------------------
@@ -176,24 +186,27 @@ TEST_P(EvenEnvironments, GiveTheAlbedo) {
     };
     const SphereGrid grid = SphereGrid::whole(16);
     const std::vector<double> integrals = integrate_cells(grid, integrand, 3, 1e-7);
-    for (std::size_t i = 0; i < integrals.size(); i += 3) albedo += glm::dvec3{integrals[i], integrals[i + 1], integrals[i + 2]};
+    for (std::size_t i = 0; i < integrals.size(); i += 3)
+        albedo += glm::dvec3{integrals[i], integrals[i + 1], integrals[i + 2]};
     if (energy.delta) {
-        for (const DeltaBranch& branch : energy.delta(material, looked.wi)) albedo += branch.probability * branch.weight;
+        for (const DeltaBranch& branch : energy.delta(material, looked.wi))
+            albedo += branch.probability * branch.weight;
     }
     expect_mean(render(looked.scene, 64).image, albedo * glm::dvec3(radiance));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, EvenEnvironments,
-    testing::Values(Energy{"ggx", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, {}, 40},
-                    Energy{"ggx_grazing", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, {}, 82},
-                    Energy{"beckmann", rough_copper(Distribution::beckmann, 0.4F, 0.4F), {reference_rough_conductor}, {}, 55},
-                    Energy{"glass_from_above", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, {}, 40},
-                    Energy{"glass_from_below", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, {}, 130},
-                    Energy{"plastic", red_plastic(false), {reference_plastic_base}, reference_plastic_coat, 40},
-                    Energy{"plastic_nonlinear", red_plastic(true), {reference_plastic_base}, reference_plastic_coat, 75},
-                    Energy{"phong", shiny_phong(20.0F), {reference_phong, reference_lambert}, {}, 40},
-                    Energy{"lambert", Diffuse{constant(Rgb{0.2F, 0.5F, 1.0F})}, {reference_lambert}, {}, 70}),
+    testing::Values(
+        Energy{"ggx", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, {}, 40},
+        Energy{"ggx_grazing", rough_copper(Distribution::ggx, 0.3F, 0.3F), {reference_rough_conductor}, {}, 82},
+        Energy{"beckmann", rough_copper(Distribution::beckmann, 0.4F, 0.4F), {reference_rough_conductor}, {}, 55},
+        Energy{"glass_from_above", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, {}, 40},
+        Energy{"glass_from_below", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, {}, 130},
+        Energy{"plastic", red_plastic(false), {reference_plastic_base}, reference_plastic_coat, 40},
+        Energy{"plastic_nonlinear", red_plastic(true), {reference_plastic_base}, reference_plastic_coat, 75},
+        Energy{"phong", shiny_phong(20.0F), {reference_phong, reference_lambert}, {}, 40},
+        Energy{"lambert", Diffuse{constant(Rgb{0.2F, 0.5F, 1.0F})}, {reference_lambert}, {}, 70}),
     [](const auto& energy) { return energy.param.name; });
 
 // Phong's lobe keeps its energy at normal incidence, whatever the exponent.
@@ -266,7 +279,8 @@ TEST(Textures, CheckerboardIsWhereItsCoordinatesSay) {
     Scene scene = empty_scene(32);
     add_floor(scene, 50.0F, add_material(scene, Diffuse{{Rgb{0.0F}, board}}));
     scene.emitters.emplace_back(DirectionalEmitter{{0, -1, 0}, radiance});
-    for (const glm::vec2 at : {glm::vec2{0.3F, -0.4F}, glm::vec2{1.3F, -0.4F}, glm::vec2{1.3F, 0.4F}, glm::vec2{-7.6F, 3.2F}}) {
+    for (const glm::vec2 at :
+         {glm::vec2{0.3F, -0.4F}, glm::vec2{1.3F, -0.4F}, glm::vec2{1.3F, 0.4F}, glm::vec2{-7.6F, 3.2F}}) {
         look_at_point(scene, {at.x + 1, 2, at.y - 1}, {at.x, 0, at.y});
         const double u = (static_cast<double>(at.x) + 50.0) / 2.0;
         const double v = (50.0 - static_cast<double>(at.y)) / 2.0;

@@ -46,7 +46,8 @@ TEST_P(Accumulate, AddsSamplesInOrder) {
                 std::uint32_t id = 0;
                 while (TILE_X(id) != x || TILE_Y(id) != y) ++id;
                 for (std::uint32_t sample = 0; sample < 3; ++sample) {
-                    for (std::uint32_t c = 0; c < 3; ++c) expected.sum[c] += static_cast<double>(value(sample * TILE_PIXELS + id, c));
+                    for (std::uint32_t c = 0; c < 3; ++c)
+                        expected.sum[c] += static_cast<double>(value(sample * TILE_PIXELS + id, c));
                 }
                 expected.samples += 3;
             }
@@ -55,7 +56,8 @@ TEST_P(Accumulate, AddsSamplesInOrder) {
             ASSERT_EQ(pixel.nonfinite, 1U);
         }
     }
-    for (std::uint32_t id = 0; id < 3 * TILE_PIXELS; ++id) ASSERT_EQ(bench.radiance(id), glm::vec3(0)) << "cleared for the next tile";
+    for (std::uint32_t id = 0; id < 3 * TILE_PIXELS; ++id)
+        ASSERT_EQ(bench.radiance(id), glm::vec3(0)) << "cleared for the next tile";
 }
 
 TEST_P(Accumulate, LeavesOutWhatLiesBeyondTheWindow) {

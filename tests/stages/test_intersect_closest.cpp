@@ -10,7 +10,9 @@ namespace {
 // At each width, with a hierarchy and without.
 class IntersectClosest : public testing::TestWithParam<std::tuple<int, bool>> {
 protected:
-    static StageBench bench(const Scene& scene) { return StageBench(scene, std::get<0>(GetParam()), 64, std::get<1>(GetParam())); }
+    static StageBench bench(const Scene& scene) {
+        return StageBench(scene, std::get<0>(GetParam()), 64, std::get<1>(GetParam()));
+    }
 };
 
 // Triangle 0 in z = 2, triangles 1 and 2 a square in z = 5.
@@ -40,13 +42,13 @@ TEST_P(IntersectClosest, WritesTheNearestHitIntoEachSlot) {
     StageBench b = bench(two_walls());
     const glm::vec3 z{0, 0, 1};
     const std::vector<TestPath> rays = {
-        ray(0, {0.25F, 0.5F, 0}, z, infinity),         // both: the triangle is nearer
-        ray(1, {-1, 2, 0}, z, infinity),               // the square alone
-        ray(2, {0.25F, 0.25F, 3}, z, infinity),        // from between them
-        ray(3, {0.25F, 0.5F, 0}, z, 1.5F),             // ends before both
-        ray(4, {0.25F, 0.5F, 0}, -z, infinity),        // away from both
-        ray(5, {0.25F, 0.5F, 4}, -z, infinity),        // the triangle from behind
-        ray(6, {9, 9, 0}, z, infinity),                // beside
+        ray(0, {0.25F, 0.5F, 0}, z, infinity),   // both: the triangle is nearer
+        ray(1, {-1, 2, 0}, z, infinity),         // the square alone
+        ray(2, {0.25F, 0.25F, 3}, z, infinity),  // from between them
+        ray(3, {0.25F, 0.5F, 0}, z, 1.5F),       // ends before both
+        ray(4, {0.25F, 0.5F, 0}, -z, infinity),  // away from both
+        ray(5, {0.25F, 0.5F, 4}, -z, infinity),  // the triangle from behind
+        ray(6, {9, 9, 0}, z, infinity),          // beside
     };
     b.fill(QUEUE_RAYS, rays);
     b.run("intersect_closest");
@@ -87,7 +89,8 @@ TEST_P(IntersectClosest, NothingInTheQueueIsNothingToDo) {
 
 INSTANTIATE_TEST_SUITE_P(All, IntersectClosest, testing::Combine(testing::Values(1, 8, 16), testing::Bool()),
                          [](const auto& p) {
-                             return std::to_string(std::get<0>(p.param)) + (std::get<1>(p.param) ? "_few" : "_hierarchy");
+                             return std::to_string(std::get<0>(p.param)) +
+                                    (std::get<1>(p.param) ? "_few" : "_hierarchy");
                          });
 
 // A sphere in front of the walls: hits of analytic shapes name them.

@@ -24,10 +24,22 @@ TEST_P(IntersectShadow, LightThatIsSeenIsAdded) {
     std::vector<bool> seen;
     for (const std::uint32_t id : ids) {
         switch (id % 4) {
-            case 0: rays.push_back(ray(id, {0.5F, 0.25F, 0}, 5.0F)); seen.push_back(false); break;
-            case 1: rays.push_back(ray(id, {0.5F, 0.25F, 0}, 1.75F)); seen.push_back(true); break;  // the light comes first
-            case 2: rays.push_back(ray(id, {1.5F, 0.25F, 0}, 5.0F)); seen.push_back(true); break;   // beside
-            default: rays.push_back(ray(id, {0.5F, 0.25F, 0}, std::numeric_limits<float>::infinity())); seen.push_back(false); break;
+            case 0:
+                rays.push_back(ray(id, {0.5F, 0.25F, 0}, 5.0F));
+                seen.push_back(false);
+                break;
+            case 1:
+                rays.push_back(ray(id, {0.5F, 0.25F, 0}, 1.75F));
+                seen.push_back(true);
+                break;  // the light comes first
+            case 2:
+                rays.push_back(ray(id, {1.5F, 0.25F, 0}, 5.0F));
+                seen.push_back(true);
+                break;  // beside
+            default:
+                rays.push_back(ray(id, {0.5F, 0.25F, 0}, std::numeric_limits<float>::infinity()));
+                seen.push_back(false);
+                break;
         }
     }
     const glm::vec3 before{0.5F, 0.25F, 0.125F};
@@ -46,7 +58,8 @@ TEST_P(IntersectShadow, LightThatIsSeenIsAdded) {
 
 INSTANTIATE_TEST_SUITE_P(All, IntersectShadow, testing::Combine(testing::Values(1, 8, 16), testing::Bool()),
                          [](const auto& p) {
-                             return std::to_string(std::get<0>(p.param)) + (std::get<1>(p.param) ? "_few" : "_hierarchy");
+                             return std::to_string(std::get<0>(p.param)) +
+                                    (std::get<1>(p.param) ? "_few" : "_hierarchy");
                          });
 
 }  // namespace

@@ -58,7 +58,8 @@ TEST_P(ScatterDiffuse, SendsAShadowRayToThePointLight) {
         EXPECT_GT(s.origin.z, 1.0F);
         EXPECT_LE(s.t, distance * (1.0 + stage_rounding));
         EXPECT_NEAR(s.t, distance, distance * stage_rounding);
-        expect_close(s.contribution, glm::dvec3(paths[i].throughput) * glm::dvec3(albedo) * glm::dvec3(intensity) * received);
+        expect_close(s.contribution,
+                     glm::dvec3(paths[i].throughput) * glm::dvec3(albedo) * glm::dvec3(intensity) * received);
     }
 }
 
@@ -134,7 +135,8 @@ TEST_P(ScatterDiffuse, WeighsTheLightSample) {
         const double light_pdf = distance * distance / direction.z;  // area 1
         const double lobe_pdf = direction.z / pi;
         const double weight = light_pdf * light_pdf / (light_pdf * light_pdf + lobe_pdf * lobe_pdf);
-        expect_close(s.contribution, glm::dvec3(paths[i].throughput) * glm::dvec3(albedo) * glm::dvec3(intensity) * (weight * lobe_pdf / light_pdf));
+        expect_close(s.contribution, glm::dvec3(paths[i].throughput) * glm::dvec3(albedo) * glm::dvec3(intensity) *
+                                         (weight * lobe_pdf / light_pdf));
     }
 }
 

@@ -59,14 +59,17 @@ void expect_lobe(StageBench& bench, const std::vector<TestPath>& paths,
 }
 
 TEST_P(ScatterGlossy, RoughConductor) {
-    const RoughConductor metal{{0.2F, 0.9F, 1.1F}, {3.9F, 2.4F, 2.2F}, constant(0.9F), constant(0.2F), constant(0.2F), Distribution::ggx};
+    const RoughConductor metal{{0.2F, 0.9F, 1.1F}, {3.9F, 2.4F, 2.2F}, constant(0.9F),
+                               constant(0.2F),     constant(0.2F),     Distribution::ggx};
     StageBench bench(wall_scene(metal), GetParam());
     const std::vector<TestPath> paths = arriving(bench);
     bench.fill(QUEUE_GLOSSY, paths);
     bench.run("scatter_glossy");
     EXPECT_EQ(bench.header().count[QUEUE_GLOSSY], 0U);
     const ::Material material = bench.scene().materials[0];
-    expect_lobe(bench, paths, [&](const glm::dvec3& wi, const glm::dvec3& wo) { return reference_rough_conductor(material, wi, wo); });
+    expect_lobe(bench, paths, [&](const glm::dvec3& wi, const glm::dvec3& wo) {
+        return reference_rough_conductor(material, wi, wo);
+    });
 }
 
 // A material of two smooth lobes has one mixture density, whichever lobe proposes.

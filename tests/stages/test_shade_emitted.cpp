@@ -10,8 +10,8 @@ class ShadeEmitted : public StageTest {};
 const Rgb first_radiance{2.0F, 1.0F, 0.5F};
 const Rgb second_radiance{0.25F, 4.0F, 8.0F};
 
-// Triangles 0, 1: a parallelogram in z = 0 that shines towards +z, 2 x 3. Triangles 2, 3: a mesh of two triangles in z = -1,
-// of areas 0.5 and 2, which shine towards +z.
+// Triangles 0, 1: a parallelogram in z = 0 that shines towards +z, 2 x 3. Triangles 2, 3: a mesh of two triangles in z
+// = -1, of areas 0.5 and 2, which shine towards +z.
 Scene two_lights() {
     Scene scene = empty_scene(16);
     const int black = add_diffuse(scene, Rgb{0});
@@ -23,7 +23,8 @@ Scene two_lights() {
     return scene;
 }
 
-TestPath arriving(const StageBench& bench, std::uint32_t triangle, std::uint32_t id, const glm::vec3& direction, float pdf) {
+TestPath arriving(const StageBench& bench, std::uint32_t triangle, std::uint32_t id, const glm::vec3& direction,
+                  float pdf) {
     TestPath p;
     p.hit = bench.slot_of(triangle);
     p.t = 4.0F;
@@ -70,7 +71,8 @@ TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
             const double light = choice * 16.0 / (cosine * areas[triangle]);
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);
             const Rgb radiance = triangle < 2 ? first_radiance : second_radiance;
-            expect_close(bench.radiance(8), glm::dvec3(p.throughput) * glm::dvec3(radiance) * p2 / (p2 + light * light));
+            expect_close(bench.radiance(8),
+                         glm::dvec3(p.throughput) * glm::dvec3(radiance) * p2 / (p2 + light * light));
         }
     }
 }

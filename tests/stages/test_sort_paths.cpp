@@ -13,7 +13,8 @@ constexpr std::uint32_t traced_queues[] = {QUEUE_ESCAPED, QUEUE_EMITTED, QUEUE_D
 // Triangles 0, 1: diffuse; 2, 3: mirror; 4, 5: rough metal; 6, 7: a diffuse light. All in y = 1, normals up.
 Scene four_surfaces(bool environment = true) {
     Scene scene = empty_scene(16);
-    const int materials[] = {add_diffuse(scene, Rgb{0.5F}), add_material(scene, Conductor{}), add_material(scene, RoughConductor{}), 0};
+    const int materials[] = {add_diffuse(scene, Rgb{0.5F}), add_material(scene, Conductor{}),
+                             add_material(scene, RoughConductor{}), 0};
     for (int i = 0; i < 4; ++i) add_quad(scene, {static_cast<float>(2 * i), 1, 0}, {0, 0, 1}, {1, 0, 0}, materials[i]);
     make_emitter(scene.shapes.back(), {3, 2, 1});
     if (environment) scene.emitters.emplace_back(ConstantEmitter{});
@@ -47,8 +48,9 @@ void expect_same_path(const TestPath& found, const TestPath& expected) {
 TEST_P(SortPaths, EachGoesWhereItsHitSays) {
     StageBench bench(four_surfaces(), GetParam());
     const std::uint32_t triangles[] = {0, 2, 5, 7, HIT_NONE, 1, 3};
-    const std::vector<std::vector<std::uint32_t>> goes = {{QUEUE_DIFFUSE}, {QUEUE_DELTA},   {QUEUE_GLOSSY}, {QUEUE_EMITTED, QUEUE_DIFFUSE},
-                                                          {QUEUE_ESCAPED}, {QUEUE_DIFFUSE}, {QUEUE_DELTA}};
+    const std::vector<std::vector<std::uint32_t>> goes = {
+        {QUEUE_DIFFUSE}, {QUEUE_DELTA},   {QUEUE_GLOSSY}, {QUEUE_EMITTED, QUEUE_DIFFUSE},
+        {QUEUE_ESCAPED}, {QUEUE_DIFFUSE}, {QUEUE_DELTA}};
     std::vector<TestPath> paths;
     std::vector<std::vector<std::uint32_t>> expected(QUEUE_COUNT);
     for (std::uint32_t id = 0; id < 53; ++id) {
@@ -99,10 +101,12 @@ TEST_P(SortPaths, MissesEndWithoutAnEnvironment) {
     EXPECT_EQ(bench.header().count[QUEUE_RAYS], 0U);
 }
 
-// Plastic: a path goes on by the coat or by the base, with the chances of their weights, and its throughput makes up for it.
+// Plastic: a path goes on by the coat or by the base, with the chances of their weights, and its throughput makes up
+// for it.
 TEST_P(SortPaths, ChoosesAClassOfLobes) {
     Scene scene = empty_scene(16);
-    add_quad(scene, {0, 0, 0}, {0, 0, 1}, {1, 0, 0}, add_material(scene, Plastic{1.5F, constant(0.5F), constant(1.0F), false}));
+    add_quad(scene, {0, 0, 0}, {0, 0, 1}, {1, 0, 0},
+             add_material(scene, Plastic{1.5F, constant(0.5F), constant(1.0F), false}));
     constexpr std::uint32_t count = 1024;
     StageBench bench(scene, GetParam(), count);
     const glm::vec3 direction = glm::normalize(glm::vec3{3, -1, 0});

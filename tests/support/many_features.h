@@ -1,5 +1,5 @@
-// A scene that needs nearly every branch of every stage: all classes of lobes, alone and together, both sides of surfaces,
-// all kinds of primitives, and lights of each reach.
+// A scene that needs nearly every branch of every stage: all classes of lobes, alone and together, both sides of
+// surfaces, all kinds of primitives, and lights of each reach.
 #pragma once
 
 #include "support/scenes.h"
@@ -21,17 +21,22 @@ inline Scene many_features_scene(int width, int height) {
 
     const int glass = add_material(scene, Dielectric{});
     add_sphere(scene, {-1.2F, 0.5F, 1.0F}, 0.5F, glass).material.back = glass;
-    const int rough_glass = add_material(
-        scene, RoughDielectric{1.5F, constant(1.0F), constant(1.0F), constant(0.2F), constant(0.2F), Distribution::beckmann});
+    const int rough_glass = add_material(scene, RoughDielectric{1.5F, constant(1.0F), constant(1.0F), constant(0.2F),
+                                                                constant(0.2F), Distribution::beckmann});
     add_sphere(scene, {1.3F, 0.5F, 1.2F}, 0.5F, rough_glass).material.back = rough_glass;
-    add_sphere(scene, {0, 0.5F, 0.2F}, 0.5F, add_material(scene, Plastic{1.5F, constant(Rgb{0.6F, 0.1F, 0.1F}), constant(1.0F), true}));
+    add_sphere(scene, {0, 0.5F, 0.2F}, 0.5F,
+               add_material(scene, Plastic{1.5F, constant(Rgb{0.6F, 0.1F, 0.1F}), constant(1.0F), true}));
     add_sphere(scene, {0.9F, 1.5F, -0.6F}, 0.4F, add_material(scene, Conductor{}));
     add_sphere(scene, {-0.9F, 1.5F, -0.6F}, 0.4F, add_material(scene, Phong{}));
 
     // A wall of brushed metal with paint behind, and shading normals that bend it.
     Shape& wall = add_quad(scene, {-2, 0, -1.5F}, {4, 0, 0}, {0, 2.5F, 0},
-                           add_material(scene, RoughConductor{{0.2F, 0.9F, 1.1F}, {3.9F, 2.4F, 2.2F}, constant(1.0F),
-                                                              constant(0.1F), constant(0.3F), Distribution::beckmann}));
+                           add_material(scene, RoughConductor{{0.2F, 0.9F, 1.1F},
+                                                              {3.9F, 2.4F, 2.2F},
+                                                              constant(1.0F),
+                                                              constant(0.1F),
+                                                              constant(0.3F),
+                                                              Distribution::beckmann}));
     wall.material.back = add_diffuse(scene, {0.3F, 0.4F, 0.5F});
     auto& mesh = std::get<TriangleMesh>(wall.geometry);
     for (const float x : {-0.2F, 0.2F, 0.2F, -0.2F}) mesh.normals.push_back(glm::normalize(glm::vec3{x, 0.1F, 1}));

@@ -61,8 +61,8 @@ inline void expect_mean(const Image& image, const glm::dvec3& expected) {
     for (glm::length_t c = 0; c < 3; ++c) {
         const double tolerance = 4.5 * found.standard_error[c] + path_rounding * expected[c];
         EXPECT_NEAR(found.mean[c], expected[c], tolerance)
-            << "channel " << c << ": " << (found.mean[c] - expected[c]) / found.standard_error[c] << " standard errors, "
-            << 100.0 * (found.mean[c] / expected[c] - 1.0) << " %";
+            << "channel " << c << ": " << (found.mean[c] - expected[c]) / found.standard_error[c]
+            << " standard errors, " << 100.0 * (found.mean[c] / expected[c] - 1.0) << " %";
         // A test that noise could hide anything from would say nothing.
         EXPECT_LT(found.standard_error[c], 0.005 * expected[c]) << "channel " << c << ": too noisy a picture";
     }
@@ -72,7 +72,8 @@ inline void expect_mean(const Image& image, const glm::dvec3& expected) {
 inline void expect_every_pixel(const Image& image, const glm::dvec3& expected) {
     for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
         for (glm::length_t c = 0; c < 3; ++c) {
-            ASSERT_NEAR(pixel(image, i)[c], expected[c], path_rounding * expected[c]) << "pixel " << i << " channel " << c;
+            ASSERT_NEAR(pixel(image, i)[c], expected[c], path_rounding * expected[c])
+                << "pixel " << i << " channel " << c;
         }
     }
 }

@@ -23,11 +23,13 @@ inline Scene empty_scene(int pixels) {
     return scene;
 }
 
-inline void look_at(Scene& scene, const glm::vec3& origin, const glm::vec3& target, const glm::vec3& up, float fov_degrees) {
+inline void look_at(Scene& scene, const glm::vec3& origin, const glm::vec3& target, const glm::vec3& up,
+                    float fov_degrees) {
     const glm::vec3 forward = glm::normalize(target - origin);
     const glm::vec3 left = glm::normalize(glm::cross(up, forward));
     const glm::vec3 above = glm::cross(forward, left);
-    scene.camera.to_world = glm::mat4(glm::vec4(left, 0), glm::vec4(above, 0), glm::vec4(forward, 0), glm::vec4(origin, 1));
+    scene.camera.to_world =
+        glm::mat4(glm::vec4(left, 0), glm::vec4(above, 0), glm::vec4(forward, 0), glm::vec4(origin, 1));
     scene.camera.fov_x_degrees = fov_degrees;
 }
 
@@ -45,7 +47,8 @@ inline int add_material(Scene& scene, MaterialModel model) {
 
 inline int add_diffuse(Scene& scene, const Rgb& albedo) { return add_material(scene, Diffuse{constant(albedo)}); }
 
-inline Shape& add_shape(Scene& scene, std::variant<TriangleMesh, AnalyticShape> geometry, int material, const char* name) {
+inline Shape& add_shape(Scene& scene, std::variant<TriangleMesh, AnalyticShape> geometry, int material,
+                        const char* name) {
     Shape& shape = scene.shapes.emplace_back();
     shape.geometry = std::move(geometry);
     shape.material.front = material;
@@ -54,7 +57,8 @@ inline Shape& add_shape(Scene& scene, std::variant<TriangleMesh, AnalyticShape> 
 }
 
 // A parallelogram with normal along edge1 x edge2.
-inline Shape& add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& edge1, const glm::vec3& edge2, int material) {
+inline Shape& add_quad(Scene& scene, const glm::vec3& corner, const glm::vec3& edge1, const glm::vec3& edge2,
+                       int material) {
     TriangleMesh mesh;
     mesh.positions = {corner, corner + edge1, corner + edge1 + edge2, corner + edge2};
     mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -28,7 +28,7 @@ struct TestPath {
     float pdf = -1.0F;
     std::uint32_t id = 0;
     std::uint32_t depth = 0;
-    float eta = 1.0F;  // only in scenes with transmission
+    float eta = 1.0F;     // only in scenes with transmission
     glm::vec3 origin{0};  // traced paths keep it only in scenes with analytic shapes
 };
 
@@ -44,7 +44,8 @@ class StageBench {
 public:
     // `few`: rays are tested against all triangles, without the hierarchy.
     // `extra`: kernels of the test's own, after those of the program.
-    explicit StageBench(const Scene& scene, int lanes = 16, int slots = 64, bool few = false, const std::string& extra = {})
+    explicit StageBench(const Scene& scene, int lanes = 16, int slots = 64, bool few = false,
+                        const std::string& extra = {})
         : scene_(flatten_scene(scene)), buffers_(device()) {
         const Bvh bvh = build_scene_bvh(scene_, 1);
         for (const TriangleBlock& block : bvh.blocks) {
@@ -131,7 +132,8 @@ public:
 
     TestShadowRay shadow(std::uint32_t slot) {
         return {get(QUEUE_SHADOW, layout_[shadow_t], slot), get_vector(QUEUE_SHADOW, layout_[shadow_direction], slot),
-                get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot), get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
+                get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot),
+                get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
                 get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot)};
     }
 
@@ -197,7 +199,9 @@ kernel void block_layout(global uint *out) {
         return memory()[layout_[first_offset + queue] + field * layout_[queue_stride] + slot];
     }
 
-    void set(std::uint32_t queue, std::uint32_t field, std::uint32_t slot, float value) { at(queue, field, slot) = value; }
+    void set(std::uint32_t queue, std::uint32_t field, std::uint32_t slot, float value) {
+        at(queue, field, slot) = value;
+    }
     void set_bits(std::uint32_t queue, std::uint32_t field, std::uint32_t slot, std::uint32_t bits) {
         std::memcpy(&at(queue, field, slot), &bits, sizeof bits);
     }

@@ -67,9 +67,10 @@ kernel void trace(global const uchar *nodes, global const uchar *blocks, global 
 
 // ---- reference ------------------------------------------------------------------------------------------
 
-// A ray against a triangle in double, with bounds on what the float tests may be off by. Their inputs are floats, so that
-// double itself is as good as exact. The bounds follow Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing
-// Rounding Error": relative gamma(n) = n 2^-24 for n roundings, on the largest magnitudes of the coordinates around the ray.
+// A ray against a triangle in double, with bounds on what the float tests may be off by. Their inputs are floats, so
+// that double itself is as good as exact. The bounds follow Pharr, Jakob, Humphreys, "Physically Based Rendering",
+// "Managing Rounding Error": relative gamma(n) = n 2^-24 for n roundings, on the largest magnitudes of the coordinates
+// around the ray.
 struct ReferenceHit {
     bool certain = false;   // inside beyond doubt
     bool possible = false;  // inside or within rounding of an edge
@@ -135,12 +136,15 @@ inline ReferenceHit reference_hit(const TestRay& ray, const TriangleVertices& tr
     // The sum of three areas is off by three times their error and its own roundings.
     if (std::abs(det) <= 3.0 * dw + gamma_bound(3) * w_most) return hit;
     hit.t = (w.x * v.p[0].z + w.y * v.p[1].z + w.z * v.p[2].z) / det;
-    hit.t_error = 3.0 * (gamma_bound(4) * w_most * v.most.z + dw * v.most.z + v.error.z * w_most) / (std::abs(det) - 3.0 * dw);
+    hit.t_error =
+        3.0 * (gamma_bound(4) * w_most * v.most.z + dw * v.most.z + v.error.z * w_most) / (std::abs(det) - 3.0 * dw);
     hit.certain = (least > dw || largest < -dw) && hit.t > 2.0 * hit.t_error;
     return hit;
 }
 
-inline std::uint32_t primitive_of(const Bvh& bvh, std::uint32_t slot) { return bvh.blocks[slot / 8].primitive[slot % 8]; }
+inline std::uint32_t primitive_of(const Bvh& bvh, std::uint32_t slot) {
+    return bvh.blocks[slot / 8].primitive[slot % 8];
+}
 
 // Empty if the hit is one that the ray may have; otherwise what is wrong with it.
 inline std::string fault_of_hit(const TestRay& ray, const TestHit& hit, const Bvh& bvh, const Triangles& triangles,

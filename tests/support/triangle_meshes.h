@@ -60,7 +60,8 @@ struct ClosedMesh {
 // An octahedron whose faces are cut in four `levels` times and blown up to a sphere.
 inline ClosedMesh sphere_mesh(int levels, float radius, const glm::vec3& center) {
     std::vector<glm::dvec3> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-    std::vector<glm::uvec3> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    std::vector<glm::uvec3> faces{{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                  {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     for (int level = 0; level < levels; ++level) {
         std::map<std::pair<unsigned, unsigned>, unsigned> middles;
         const auto middle = [&](unsigned a, unsigned b) {
@@ -74,7 +75,8 @@ inline ClosedMesh sphere_mesh(int levels, float radius, const glm::vec3& center)
             const unsigned ab = middle(f.x, f.y);
             const unsigned bc = middle(f.y, f.z);
             const unsigned ca = middle(f.z, f.x);
-            for (const glm::uvec3& g : {glm::uvec3{f.x, ab, ca}, {ab, f.y, bc}, {ca, bc, f.z}, {ab, bc, ca}}) finer.push_back(g);
+            for (const glm::uvec3& g : {glm::uvec3{f.x, ab, ca}, {ab, f.y, bc}, {ca, bc, f.z}, {ab, bc, ca}})
+                finer.push_back(g);
         }
         faces = std::move(finer);
     }
