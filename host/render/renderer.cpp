@@ -22,7 +22,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 constexpr int default_block_slots = 512;
 // Blocks in flight a compute thread: enough that a launch outweighs its overhead, few enough that their waves stay in the
 // caches of the cores.
-constexpr std::size_t blocks_per_thread = 16;
+constexpr std::size_t blocks_per_thread = 32;
 constexpr std::size_t named_nonfinite_samples = 8;
 
 std::uint32_t samples_per_block(int samples_per_pixel) {

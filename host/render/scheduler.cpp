@@ -1,6 +1,7 @@
 #include "render/scheduler.h"
 
 #include <algorithm>
+#include <random>
 
 namespace wavelobe {
 
@@ -16,6 +17,8 @@ TileScheduler::TileScheduler(const RenderParameters& window, std::uint32_t sampl
         }
     }
     for (std::size_t i = 0; i < tiles_.size(); ++i) ready_.push_back(i);
+    // Threads take runs of blocks: neighbouring tiles, which cost alike, must not end up in the same one.
+    std::ranges::shuffle(ready_, std::mt19937{});
 }
 
 std::size_t TileScheduler::assign(std::span<BlockHeader> blocks) {
