@@ -100,28 +100,27 @@ void MaterialFlattener::fill(DeviceMaterial& out, const RoughConductor& m) {
     fill_roughness(out, m.alpha_u, m.alpha_v, m.distribution);
 }
 
-void MaterialFlattener::fill(DeviceMaterial& out, const Dielectric& m) {
-    out.lobes = bit(LOBE_DIELECTRIC);
+template <class Model>
+void MaterialFlattener::fill_interface(DeviceMaterial& out, const Model& m) {
     out.flags = MATERIAL_TRANSMISSIVE;
     out.eta.x = m.eta;
     out.specular = rgb(m.specular_reflectance);
     out.transmission = rgb(m.specular_transmittance);
+}
+
+void MaterialFlattener::fill(DeviceMaterial& out, const Dielectric& m) {
+    out.lobes = bit(LOBE_DIELECTRIC);
+    fill_interface(out, m);
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const ThinDielectric& m) {
     out.lobes = bit(LOBE_THIN_DIELECTRIC);
-    out.flags = MATERIAL_TRANSMISSIVE;
-    out.eta.x = m.eta;
-    out.specular = rgb(m.specular_reflectance);
-    out.transmission = rgb(m.specular_transmittance);
+    fill_interface(out, m);
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const RoughDielectric& m) {
     out.lobes = bit(LOBE_ROUGH_DIELECTRIC);
-    out.flags = MATERIAL_TRANSMISSIVE;
-    out.eta.x = m.eta;
-    out.specular = rgb(m.specular_reflectance);
-    out.transmission = rgb(m.specular_transmittance);
+    fill_interface(out, m);
     fill_roughness(out, m.alpha_u, m.alpha_v, m.distribution);
 }
 

@@ -30,6 +30,9 @@ private:
     void fill(DeviceMaterial& out, const RoughDielectric& m);
     void fill(DeviceMaterial& out, const Plastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
+    // What all dielectrics share.
+    template <class Model>
+    void fill_interface(DeviceMaterial& out, const Model& m);
     void fill_roughness(DeviceMaterial& out, const Parameter& alpha_u, const Parameter& alpha_v, Distribution distribution);
 
     const Scene& scene_;
