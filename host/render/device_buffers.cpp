@@ -69,7 +69,7 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
-    add_zeros<FilmPixel>("film", pixels);
+    add_zeros<FilmPixel>("film", pixels * (scene.features.error_estimate ? 2 : 1));
 }
 
 void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {

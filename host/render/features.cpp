@@ -83,6 +83,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
@@ -180,6 +181,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(error_estimate, "error_estimate");
     add(few_triangles, "few_triangles");
     return out;
 }
