@@ -10,7 +10,7 @@
 #include "core/rounding.h"
 #include "shared/bvh.h"
 #include "shared/scene.h"
-#if HAS_MASKS
+#if HAS_OPACITY
 #include "shapes/opacity.h"
 #endif
 
@@ -18,7 +18,7 @@ typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
     uint vertex_count, triangle_count;
-#if HAS_MASKS
+#if HAS_OPACITY
     OpacityView opacity;
 #endif
 } FewTriangles;

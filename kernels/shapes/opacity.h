@@ -19,9 +19,8 @@
 #include "bsdf/lobe.h"
 #endif
 
-// What shapes with opacity are looked up in, and whose rays are traced.
+// What shapes with opacity are looked up in.
 typedef struct {
-    Block block;
     uint seed;
     global const struct Opacity *opacities; // one a shape
     global const uint *primitive_shapes;
@@ -37,25 +36,17 @@ typedef struct {
 } OpacityView;
 
 #if HAS_UVS
-#define OPACITY_UVS_PARAMETER , global const float *uvs
 #define OPACITY_UVS_ARGUMENT , uvs
 #else
-#define OPACITY_UVS_PARAMETER
 #define OPACITY_UVS_ARGUMENT
 #endif
 #if HAS_TEXTURES
-#define OPACITY_TEXTURE_PARAMETERS , global const struct Texture *textures, global const float *texels
 #define OPACITY_TEXTURE_ARGUMENTS , textures, texels
 #else
-#define OPACITY_TEXTURE_PARAMETERS
 #define OPACITY_TEXTURE_ARGUMENTS
 #endif
-// OPACITY_VIEW wants `parameters` among the kernel's parameters, and its `block`.
-#define OPACITY_PARAMETERS                                                                      \
-    global const struct Opacity *opacities, global const uint *primitive_shapes,                \
-        global const struct Shape *shapes OPACITY_UVS_PARAMETER OPACITY_TEXTURE_PARAMETERS
-#define OPACITY_VIEW \
-    {block, parameters->seed, opacities, primitive_shapes, shapes, parameters->triangle_count OPACITY_UVS_ARGUMENT \
+#define OPACITY_VIEW                                                                                            \
+    {parameters->seed, opacities, primitive_shapes, shapes, parameters->triangle_count OPACITY_UVS_ARGUMENT     \
          OPACITY_TEXTURE_ARGUMENTS}
 
 // Opacity of shapes at texture coordinates, in [0, 1].
@@ -76,8 +67,8 @@ INLINE Float opacity_at(OpacityView o, UInt shape, Float u, Float v) {
 }
 
 // A number of the ray's own, from the path it belongs to and its direction.
-INLINE UInt ray_key(OpacityView o, UInt path, Vec3 direction) {
-    SampleId sample = path_sample_id(o.block, path, o.seed);
+INLINE UInt ray_key(OpacityView o, Block block, UInt path, Vec3 direction) {
+    SampleId sample = path_sample_id(block, path, o.seed);
     UInt h = mix_bits(sample.pixel_hash + sample.reversed_index);
     h = mix_bits(h + as_UInt(direction.x));
     h = mix_bits(h + as_UInt(direction.y));

@@ -14,7 +14,7 @@
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
-#if HAS_MASKS
+#if HAS_OPACITY
 #include "shapes/masks.h"
 #endif
 
@@ -25,7 +25,7 @@ typedef struct {
     global const struct Analytic *analytics;
     global const uint *analytic_order;
 #endif
-#if HAS_MASKS
+#if HAS_OPACITY
     OpacityView opacity;
 #endif
 } Geometry;

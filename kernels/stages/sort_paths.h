@@ -1,7 +1,10 @@
 // Sorts traced paths by what comes next: each goes into the queue of the escaped, of those that hit a light, and of the
 // class of lobes that continues it. Paths with nothing left to do end here. Leaves the ray queue empty.
+#ifndef WAVELOBE_STAGES_SORT_PATHS_H
+#define WAVELOBE_STAGES_SORT_PATHS_H
+
 #include "stages/dimensions.h"
-#include "bsdf/material.h"
+#include "stages/scene_view.h"
 
 // Copies the lanes of `bits` of the ray queue's group at slot i to the end of another queue.
 INLINE uint move_paths(Queue to, uint at, Queue rays, uint i, Rgb throughput, uint bits) {
@@ -45,21 +48,19 @@ INLINE Continuation choose_class(Block block, uint seed, SurfaceView view, const
 #endif
 
 #if HAS_VEILED_EMITTERS
-#include "shapes/opacity.h"
-#define VEIL_PARAMETERS , global const struct Opacity *opacities
 #define PASSES_BEHIND 1
 
 // Lanes of `veiled`, which have hit an emitter that is only partly there, whose paths go on behind it.
-INLINE Int passes_veil(OpacityView o, SurfaceView view, Queue rays, uint i, Int veiled) {
+INLINE Int passes_veil(OpacityView o, Block block, SurfaceView view, Queue rays, uint i, Int veiled) {
     TracedPath path = read_traced_path(rays, i);
     path.hit = SELECT(veiled, path.hit, (UInt)0u);
     Surface surface = load_surface(view, &path);
     // A path may meet both sides of a sphere.
     UInt event = surface.primitive ^ mix_bits(as_UInt(path.t));
-    return veiled & passes(ray_key(o, path.id, path.direction), event, opacity_at(o, surface.shape, surface.u, surface.v));
+    Float opacity = opacity_at(o, surface.shape, surface.u, surface.v);
+    return veiled & passes(ray_key(o, block, path.id, path.direction), event, opacity);
 }
 #else
-#define VEIL_PARAMETERS
 #define PASSES_BEHIND (HIDE_EMITTERS && HAS_SURFACE_LIGHTS)
 #endif
 
@@ -81,10 +82,9 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int pass
 }
 #endif
 
-kernel void sort_paths(global struct BlockHeader *headers, global float *blocks, SURFACE_PARAMETERS TEXTURE_PARAMETERS
-                       VEIL_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    SurfaceView view = SURFACE_VIEW;
+INLINE uint run_sort_paths(Block block, const SceneView *scene) {
+    global const struct RenderParameters *parameters = scene->parameters;
+    SurfaceView view = scene->surfaces;
     Queue rays = QUEUE(block, RAYS);
     uint n = *rays.count;
     uint passed = 0u, escaped = 0u, emitted = 0u, delta = 0u, glossy = 0u, diffuse = 0u;
@@ -115,8 +115,7 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
 #if HAS_VEILED_EMITTERS
         Int veiled = found & ((flags & (UInt)SHAPE_VEILED) != (UInt)0u);
         if (any_lane(veiled)) {
-            OpacityView opacity = OPACITY_VIEW;
-            Int behind = passes_veil(opacity, view, rays, i, veiled);
+            Int behind = passes_veil(scene->geometry.opacity, block, view, rays, i, veiled);
             found &= !behind;
             passing |= behind;
         }
@@ -126,7 +125,8 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
 #if HAS_LOBE_CHOICE
         TracedPath path = read_traced_path(rays, i);
         path.hit = SELECT(found, path.hit, (UInt)0u);
-        c = choose_class(block, parameters->seed, view, &path, scattering, TEXTURE_ARGUMENTS);
+        c = choose_class(block, parameters->seed, view, &path, scattering, scene->textures,
+                         scene->texels);
 #else
         c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
         c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
@@ -158,4 +158,7 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
     count[QUEUE_DELTA] = delta;
     count[QUEUE_GLOSSY] = glossy;
     count[QUEUE_DIFFUSE] = diffuse;
+    return n;
 }
+
+#endif

@@ -1,14 +1,17 @@
 // Finds what each ray of the ray queue hits first, and writes it into the path's slot.
-#include "shapes/geometry_parameters.h"
+#ifndef WAVELOBE_STAGES_INTERSECT_CLOSEST_H
+#define WAVELOBE_STAGES_INTERSECT_CLOSEST_H
+
+#include "stages/scene_view.h"
 
 #if HAS_FEW_TRIANGLES
 // LANES rays at a time against everything.
-INLINE void intersect_rays(Geometry geometry, Queue rays) {
+INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         Vec3 direction = read_vec3(rays, PATH_DIRECTION, i);
         LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), direction, read_field(rays, PATH_T, i)
-                                     KEY_ARGUMENT(geometry, read_uint(rays, PATH_ID, i), direction));
+                                     KEY_ARGUMENT(geometry, block, read_uint(rays, PATH_ID, i), direction));
         write_field(rays, PATH_T, i, hit.t);
         write_field(rays, PATH_U, i, hit.u);
         write_field(rays, PATH_V, i, hit.v);
@@ -17,10 +20,10 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 }
 #else
 // Ray by ray through the hierarchy.
-INLINE void intersect_rays(Geometry geometry, Queue rays) {
+INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(geometry, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_ID, i);
+        Ray r = slot_ray(geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_ID, i);
         Hit hit = trace_closest(geometry, &r);
         set_slot(rays, PATH_T, i, hit.t);
         set_slot(rays, PATH_U, i, hit.u);
@@ -30,8 +33,10 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 }
 #endif
 
-kernel void intersect_closest(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    Geometry geometry = GEOMETRY_VIEW;
-    intersect_rays(geometry, QUEUE(block, RAYS));
+INLINE uint run_intersect_closest(Block block, const SceneView *scene) {
+    Queue rays = QUEUE(block, RAYS);
+    intersect_rays(scene->geometry, block, rays);
+    return *rays.count;
 }
+
+#endif
