@@ -47,15 +47,24 @@ typedef FewTriangles Geometry;
 #define FIRST_LANE(v) (v).s0
 #endif
 
+#if HAS_MASKS
+INLINE uint slot_key(Geometry g, Block block, Queue q, uint direction, uint path, uint i) {
+    Vec3 d = vec3((Float)slot_float(q, direction, i), (Float)slot_float(q, direction + 1u, i),
+                  (Float)slot_float(q, direction + 2u, i));
+    return FIRST_LANE(ray_key(g.opacity, block, (UInt)slot_uint(q, path, i), d));
+}
+#endif
+
 // The ray of slot i; `origin`, `direction`, `limit` and `path` are the queue's fields for them.
 INLINE Ray slot_ray(Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint path, uint i) {
-    Ray r = {slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
-             slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
-             slot_float(q, limit, i)};
+    Ray r = {
+        slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
+        slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
+        slot_float(q, limit, i),
 #if HAS_MASKS
-    UInt id = (UInt)slot_uint(q, path, i);
-    r.key = FIRST_LANE(ray_key(g.opacity, block, id, vec3((Float)r.dx, (Float)r.dy, (Float)r.dz)));
+        slot_key(g, block, q, direction, path, i),
 #endif
+    };
     return r;
 }
 #endif

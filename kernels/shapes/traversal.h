@@ -14,7 +14,7 @@
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
-#if HAS_OPACITY
+#if HAS_MASKS
 #include "shapes/masks.h"
 #endif
 
