@@ -85,6 +85,9 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_BECKMANN", f.beckmann);
     out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_MASKS", f.masks);
+    out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
     out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
@@ -182,6 +185,8 @@ std::vector<std::string> FeatureSet::names() const {
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
     add(error_estimate, "error_estimate");
+    add(masks, "masks");
+    add(veiled_emitters, "veiled_emitters");
     add(few_triangles, "few_triangles");
     return out;
 }
