@@ -84,6 +84,9 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_MASKS", f.masks);
+    out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
     out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
@@ -180,6 +183,8 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(masks, "masks");
+    add(veiled_emitters, "veiled_emitters");
     add(few_triangles, "few_triangles");
     return out;
 }

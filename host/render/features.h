@@ -41,6 +41,8 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool masks = false;            // rays pass some primitives, by their opacity
+    bool veiled_emitters = false;  // paths go on behind some emitters
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
 

@@ -180,6 +180,10 @@ std::uint32_t MaterialFlattener::add(int material) {
     return index;
 }
 
+DeviceOpacity MaterialFlattener::opacity(const Opacity& opacity) {
+    return {scalar(opacity.value), opacity.texture_scale, opacity.cutoff ? std::max(*opacity.cutoff, 0.0F) : -1.0F};
+}
+
 std::uint32_t MaterialFlattener::lobes(std::uint32_t device_material) const {
     return device_material == WAVELOBE_NONE ? 0 : out_.materials[device_material].lobes;
 }

@@ -18,6 +18,7 @@ public:
     std::uint32_t lobes(std::uint32_t device_material) const;
 
     TexturedRgb rgb(const Parameter& parameter);
+    DeviceOpacity opacity(const Opacity& opacity);
 
 private:
     TexturedFloat scalar(const Parameter& parameter);

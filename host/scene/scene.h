@@ -129,11 +129,21 @@ struct Material {
     std::string name;  // id in the file, for messages
 };
 
+// How much of a surface is there, both sides alike: rays, those to lights among them, pass it with probability 1 - opacity. The
+// value's red channel is scaled (a texture's alone) and clamped to [0, 1]; with a cutoff (glTF's alpha mode MASK) the surface
+// is all there where the scaled value reaches it and not at all elsewhere. What a surface emits is not lessened.
+struct Opacity {
+    Parameter value{Rgb{1.0F}, nullptr};
+    float texture_scale = 1.0F;
+    std::optional<float> cutoff;
+};
+
 // What a surface shows on each side. Transmissive materials have the same index on both sides;
 // a one-sided opaque material has no back (black there); `twosided` has both.
 struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
+    Opacity opacity{};
 };
 
 // ---- shapes --------------------------------------------------------------------------------------

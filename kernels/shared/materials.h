@@ -25,6 +25,14 @@ struct TexturedFloat {
     Uint32 texture;
 };
 
+// How much of a shape is there: rays pass it with probability 1 - opacity. One record a shape, in scenes with such shapes.
+struct Opacity {
+    struct TexturedFloat value;
+    float scale;  // of a texture's value
+    float cutoff; // at least 0: all there from this value on, and not at all below it; negative: none
+};
+WAVELOBE_CHECK_SIZE(Opacity, 16);
+
 struct Material {
     Uint32 lobes; // bit LOBE_x of bsdf/lobes.def for each lobe it has
     Uint32 flags;

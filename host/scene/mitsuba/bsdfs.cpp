@@ -180,14 +180,43 @@ Bsdf read_twosided(Query& query) {
     return {front.front, back.front, false};
 }
 
+Bsdf read_mask(Query& query) {
+    Bsdf masked;
+    const Parameter opacity = query.scalar_parameter("opacity", 0.5, {});
+    const std::vector<const Child*> nested = query.children("bsdf");
+    if (query.has_unresolved_children()) return {};
+    if (nested.size() != 1) {
+        query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one, which `opacity` masks", "");
+        return {};
+    }
+    if (nested.front()->object->type == "mask") {
+        query.fault("holds another mask; only one can be applied", "multiply the two opacities into one mask");
+        return {};
+    }
+    masked = read_bsdf(query.context(), *nested.front()->object);
+    masked.transmissive = true;
+    // A mask of nothing is nothing.
+    if (nested.front()->object->type != "null") masked.opacity.value = opacity;
+    return masked;
+}
+
+// A surface that is not there. Where it emits, it is black otherwise.
+Bsdf read_null(Query& query) {
+    Bsdf nothing = make(query, Diffuse{Parameter{Rgb(0.0F), nullptr}}, Sides::both);
+    nothing.opacity.value.value = Rgb(0.0F);
+    return nothing;
+}
+
 struct Plugin {
     const char* name;
     Bsdf (*read)(Query&);
 };
-constexpr std::array<Plugin, 10> plugins{{
+constexpr std::array<Plugin, 12> plugins{{
     {"conductor", read_conductor},
     {"dielectric", read_dielectric},
     {"diffuse", read_diffuse},
+    {"mask", read_mask},
+    {"null", read_null},
     {"phong", read_phong},
     {"plastic", read_plastic},
     {"roughconductor", read_rough_conductor},
