@@ -105,6 +105,15 @@ struct Plastic {
     bool nonlinear = false;
 };
 
+struct RoughPlastic {
+    float eta = 1.49F / 1.000277F;
+    Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    float alpha = 0.1F;
+    Distribution distribution = Distribution::beckmann;
+    bool nonlinear = false;
+};
+
 // Normalized Phong of Mitsuba 0.x: diffuse / pi + specular * (exponent + 2) / (2 pi) * cos^exponent.
 struct Phong {
     Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
@@ -113,7 +122,7 @@ struct Phong {
 };
 
 using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
-                                   RoughDielectric, Plastic, Phong>;
+                                   RoughDielectric, Plastic, RoughPlastic, Phong>;
 
 struct Material {
     MaterialModel model;

@@ -46,8 +46,18 @@ struct Material {
     struct TexturedFloat exponent;   // Phong
     float diffuse_fresnel_internal;  // plastic: mean Fresnel reflectance from inside, cosine weighted
     float specular_weight;           // share of the specular lobe in lobe selection, from mean reflectances
+    Uint32 extension;                // record from which on the parameters lie that few materials have
 };
-WAVELOBE_CHECK_SIZE(Material, 112);
+WAVELOBE_CHECK_SIZE(Material, 116);
+
+// Extensions lie in the array of materials, in whole records; each lobe that has one says what is in it.
+
+// Rough plastic: the share of light that its surface lets through from outside, at cosines in equal steps from 0 to 1.
+#define ROUGH_TRANSMITTANCE_STEPS 64u
+struct RoughTransmittance {
+    float at[ROUGH_TRANSMITTANCE_STEPS];
+};
+WAVELOBE_CHECK_SIZE(RoughTransmittance, 256);
 
 struct Texture {
     Uint32 kind;         // TEXTURE_x
