@@ -26,10 +26,10 @@ typedef FewTriangles Geometry;
 #define GEOMETRY_VIEW {bvh_nodes, triangle_blocks}
 #endif
 
-INLINE Ray slot_ray(Queue q, uint origin, uint direction, uint limit, uint i) {
+INLINE Ray slot_ray(Queue q, uint origin, uint direction, uint limit, uint from, uint i) {
     Ray r = {slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
              slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
-             slot_float(q, limit, i)};
+             slot_float(q, limit, i),     slot_uint(q, from, i)};
     return r;
 }
 #endif

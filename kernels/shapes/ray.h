@@ -10,6 +10,7 @@ typedef struct {
     float ox, oy, oz;
     float dx, dy, dz; // unit
     float limit;
+    uint from; // number of the triangle that the ray leaves and cannot meet; HIT_NONE: it leaves none
 } Ray;
 
 typedef struct {
@@ -17,6 +18,8 @@ typedef struct {
     float u, v;    // barycentric weights of the second and third vertex
     uint primitive; // HIT_NONE, a triangle slot, or HIT_ANALYTIC | index
 } Hit;
+
+#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 
 // Rays that are not numbers hit nothing. The box test must not see them: which of its comparisons a NaN passes is chance.
 INLINE int is_finite_ray(const Ray *r) {

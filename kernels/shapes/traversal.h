@@ -68,7 +68,6 @@ INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float
     return lane_bits8(enter <= leave);
 }
 
-#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
 
@@ -130,9 +129,9 @@ INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit)
 }
 #endif
 
-INLINE void closest_in_block(global const uchar *block, uint index, const RayShear *shear, Hit *hit) {
+INLINE void closest_in_block(global const uchar *block, uint index, const RayShear *shear, const Ray *r, Hit *hit) {
     float8 t, u, v;
-    uint mask = intersect_triangle_block(block, shear, hit->t, &t, &u, &v);
+    uint mask = intersect_triangle_block(block, shear, r, hit->t, &t, &u, &v);
     if (LIKELY(mask == 0u)) return;
     float ts[8] __attribute__((aligned(32))), us[8] __attribute__((aligned(32))), vs[8] __attribute__((aligned(32)));
     *(float8 *)ts = t;
@@ -175,7 +174,7 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
 #endif
         {
             uint block = current & ~BVH_LEAF;
-            closest_in_block(g.blocks + (size_t)block * sizeof(struct TriangleBlock), block, &shear, &hit);
+            closest_in_block(g.blocks + (size_t)block * sizeof(struct TriangleBlock), block, &shear, r, &hit);
         }
     pop:;
         ulong limit_key = (ulong)as_uint(hit.t) << 32, key;
@@ -230,9 +229,10 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
             continue;
         }
 #endif
-        global const uchar *block = g.blocks + (size_t)(current & ~BVH_LEAF) * sizeof(struct TriangleBlock);
+        uint block = current & ~BVH_LEAF;
+        global const uchar *triangles = g.blocks + (size_t)block * sizeof(struct TriangleBlock);
         float8 t, u, v;
-        if (UNLIKELY(intersect_triangle_block(block, &shear, r->limit, &t, &u, &v))) return 1u;
+        if (UNLIKELY(intersect_triangle_block(triangles, &shear, r, r->limit, &t, &u, &v))) return 1u;
         current = stack[--top];
     }
 }

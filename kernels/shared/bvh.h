@@ -31,9 +31,10 @@ WAVELOBE_CHECK_SIZE(TriangleBlock, 320);
 // distinct vertices.
 struct FewTriangle {
     Uint32 corner[3];
-    Uint32 slot; // what a hit names
+    Uint32 slot;      // what a hit names
+    Uint32 primitive; // number of the triangle
 };
-WAVELOBE_CHECK_SIZE(FewTriangle, 16);
+WAVELOBE_CHECK_SIZE(FewTriangle, 20);
 
 #define FEW_TRIANGLES_MAX 96u
 #define FEW_VERTICES_MAX 128u

@@ -1,6 +1,7 @@
 // Starts paths: fills the free slots of the ray queue with camera rays of the block's next path ids.
 #include "core/math.h"
 #include "sampling/warps.h"
+#include "shared/bvh.h"
 #include "stages/dimensions.h"
 
 INLINE Vec3 transform_vector(global const struct Affine *a, Vec3 v) {
@@ -36,6 +37,7 @@ kernel void generate(global struct BlockHeader *headers, global float *blocks,
         append_vec3(rays, PATH_ORIGIN, count, scale_add(direction, stretch * p->near_clip, eye), bits);
         append_vec3(rays, PATH_DIRECTION, count, direction, bits);
         append_field(rays, PATH_T, count, stretch * (p->far_clip - p->near_clip), bits);
+        append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
         append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
         append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
         append_uint(rays, PATH_ID, count, id, bits);

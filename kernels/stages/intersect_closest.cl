@@ -7,7 +7,7 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), read_vec3(rays, PATH_DIRECTION, i),
-                                     read_field(rays, PATH_T, i));
+                                     read_field(rays, PATH_T, i), read_uint(rays, PATH_HIT, i));
         write_field(rays, PATH_T, i, hit.t);
         write_field(rays, PATH_U, i, hit.u);
         write_field(rays, PATH_V, i, hit.v);
@@ -19,7 +19,7 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 INLINE void intersect_rays(Geometry geometry, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, i);
+        Ray r = slot_ray(rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, i);
         Hit hit = trace_closest(geometry, &r);
         set_slot(rays, PATH_T, i, hit.t);
         set_slot(rays, PATH_U, i, hit.u);

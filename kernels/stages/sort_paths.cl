@@ -56,6 +56,7 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int hidd
     append_vec3(rays, PATH_ORIGIN, first,
                 offset_ray_origin(surface.position, surface.error, surface.normal, path.direction), bits);
     append_field(rays, PATH_T, first, (Float)INFINITY, bits);
+    append_uint(rays, PATH_HIT, first, surface.primitive, bits);
     return at;
 }
 #endif
