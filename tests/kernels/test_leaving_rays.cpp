@@ -140,8 +140,8 @@ class NearWall : public testing::TestWithParam<bool> {};
 TEST_P(NearWall, IsMet) {
     Generator random(5);
     for (const float scale : {1e-6F, 1.0F, 1e6F}) {
-        TriangleVertices wall;
-        for (glm::vec3& v : wall) v = scale * uniform_in_cube(random, 1.0F);
+        TriangleVertices wall{glm::vec3{1.0F, 0.1F, 0.2F}, glm::vec3{-0.3F, 1.0F, -0.4F}, glm::vec3{0.2F, -0.5F, 0.9F}};
+        for (glm::vec3& v : wall) v *= scale;
         Scene scene = empty_scene(16);
         add_shape(scene, mesh_of({wall}), add_diffuse(scene, Rgb{0.5F}), "wall");
         SurfaceBench bench(scene, 16, GetParam());
@@ -152,7 +152,7 @@ TEST_P(NearWall, IsMet) {
         while (rays.size() < surface_batch) {
             const float b = uniform(random, 0.1F, 0.5F);
             const float c = uniform(random, 0.1F, 0.8F - b);
-            const float away = scale * std::exp2(uniform(random, -24.0F, -3.0F));
+            const float away = scale * std::exp2(uniform(random, -24.0F, -7.0F));
             const glm::vec3 origin = wall[0] + b * (wall[1] - wall[0]) + c * (wall[2] - wall[0]) +
                                      away * uniform_direction(random);
             const glm::vec3 direction = uniform_direction(random);
