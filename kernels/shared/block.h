@@ -17,7 +17,7 @@
 
 #define QUEUE_PADDING 16u     // vector stores may run past the last slot
 #define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h
-#define SHADOW_FIELDS 11u
+#define SHADOW_FIELDS 12u
 
 // Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.
 #define QUEUE_RAYS 0u
