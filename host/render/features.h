@@ -41,6 +41,7 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
 
