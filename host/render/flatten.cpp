@@ -191,14 +191,12 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     const double area = analytic_area(analytic);
     a.area = static_cast<float>(area);
     a.radius = static_cast<float>(glm::length(glm::dvec3(analytic.to_world[0])));
-    if (emits(shape)) {
-        lights_.add_analytic(*shape.emitter, lights[kind], static_cast<std::uint32_t>(out_.analytics.size()), area,
-                             analytic_bounds(analytic));
-    }
-    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
-    out_.shapes.push_back(s);
+    const auto index = static_cast<std::uint32_t>(out_.analytics.size());
     out_.analytics.push_back(a);
     out_.analytic_bounds.push_back(analytic_bounds(analytic));
+    if (emits(shape)) lights_.add_analytic(*shape.emitter, lights[kind], index, area, out_.analytic_bounds.back());
+    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
+    out_.shapes.push_back(s);
 }
 
 void Flattener::set_parameters() {
