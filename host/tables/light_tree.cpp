@@ -113,7 +113,7 @@ private:
         const auto begin = order_.begin() + static_cast<std::ptrdiff_t>(first);
         const auto end = order_.begin() + static_cast<std::ptrdiff_t>(last);
         // Levels that halving needs, one of them this one.
-        const int needed = std::bit_width(last - first - 1);
+        const int needed = static_cast<int>(std::bit_width(last - first - 1));
         if (level + needed < most_levels) {
             const Split split = best_split(first, last, low, high);
             if (split.axis >= 0) {
