@@ -49,8 +49,8 @@ TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
     for (const char* absent :
          {"\"bsdf/microfacet.h\"", "\"bsdf/fresnel.h\"", "\"bsdf/rough_conductor.h\"", "\"bsdf/dielectric.h\"",
           "\"bsdf/mirror.h\"", "\"bsdf/phong.h\"", "\"bsdf/plastic_coat.h\"", "\"lights/envmap.h\"",
-          "\"lights/constant.h\"", "\"lights/sphere.h\"", "\"lights/spot.h\"", "kernel void scatter_delta",
-          "kernel void scatter_glossy", "kernel void shade_escaped"}) {
+          "\"lights/constant.h\"", "\"lights/sphere.h\"", "\"lights/spot.h\"", "uint run_scatter_delta",
+          "uint run_scatter_glossy", "uint run_shade_escaped"}) {
         EXPECT_FALSE(contains(text, absent)) << absent;
     }
     for (const char* feature : {"TEXTURES", "TEXTURED_EMITTERS", "SMOOTH_NORMALS", "UVS", "ANALYTIC", "ANISOTROPY",
