@@ -15,8 +15,9 @@
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
 INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, const TracedPath *path,
                                 const Surface *surface, const SmoothLobes *lobes, UInt receiver) {
-    Float u_light = ZERO, u_deep, u1, u2;
+    Float u_light = ZERO, u1, u2;
 #if LIGHT_COUNT > 1
+    Float u_deep; // for trees
     sample_2d(sample, vertex_pair(path->depth, PAIR_CHOICE), &u_light, &u_deep);
 #endif
     sample_2d(sample, vertex_pair(path->depth, PAIR_LIGHT), &u1, &u2);
