@@ -143,13 +143,25 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
     out.exponent = scalar(m.exponent);
 }
 
+void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
+    out.lobes = bit(LOBE_METALLIC_ROUGHNESS);
+    // A metal throughout has no base.
+    if (m.metallic.texture || m.metallic.value.x < 1.0F) out.lobes |= bit(LOBE_METALLIC_ROUGHNESS_BASE);
+    out_.features.ggx = true;
+    out.diffuse = rgb(m.base_color);
+    out.metallic = scalar(m.metallic);
+    out.alpha_u = scalar(m.roughness);
+    const double amplitude = (1.0 - static_cast<double>(m.ior)) / (1.0 + static_cast<double>(m.ior));
+    out.specular.value = packed(Rgb(static_cast<float>(amplitude * amplitude)));
+}
+
 std::uint32_t MaterialFlattener::add(int material) {
     if (material < 0) return WAVELOBE_NONE;
     const auto [found, added] = materials_.try_emplace(material, static_cast<std::uint32_t>(out_.materials.size()));
     if (!added) return found->second;
     DeviceMaterial m{};
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
-    for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent}) parameter->texture = WAVELOBE_NONE;
+    for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent, &m.metallic}) parameter->texture = WAVELOBE_NONE;
     std::visit([this, &m](const auto& model) { fill(m, model); },
                scene_.materials[static_cast<std::size_t>(material)].model);
 

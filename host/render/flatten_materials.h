@@ -30,6 +30,7 @@ private:
     void fill(DeviceMaterial& out, const RoughDielectric& m);
     void fill(DeviceMaterial& out, const Plastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
+    void fill(DeviceMaterial& out, const MetallicRoughness& m);
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);

@@ -112,8 +112,17 @@ struct Phong {
     Parameter exponent{Rgb{30.0F}, nullptr};
 };
 
+// glTF 2.0, appendix B: a dielectric of index 1.5 over a diffuse base, mixed with a metal of the base colour. Parameters are
+// products of value and texture.
+struct MetallicRoughness {
+    Parameter base_color{Rgb{1.0F}, nullptr};
+    Parameter metallic{Rgb{1.0F}, nullptr};
+    Parameter roughness{Rgb{1.0F}, nullptr};  // square root of the microfacets' alpha
+    float ior = 1.5F;
+};
+
 using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
-                                   RoughDielectric, Plastic, Phong>;
+                                   RoughDielectric, Plastic, Phong, MetallicRoughness>;
 
 struct Material {
     MaterialModel model;
@@ -238,6 +247,7 @@ struct Scene {
     std::uint32_t seed = 0;
     std::string name;  // file name without folder and ending
     std::vector<std::string> warnings;  // what a reader passed over or repaired, one line each
+    std::vector<std::string> notes;     // what a reader added, one line each
 };
 
 }  // namespace wavelobe

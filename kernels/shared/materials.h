@@ -36,10 +36,11 @@ struct Material {
     struct TexturedFloat alpha_u;    // microfacet roughness
     struct TexturedFloat alpha_v;
     struct TexturedFloat exponent;   // Phong
+    struct TexturedFloat metallic;   // glTF
     float diffuse_fresnel_internal;  // plastic: mean Fresnel reflectance from inside, cosine weighted
     float specular_weight;           // share of the specular lobe in lobe selection, from mean reflectances
 };
-WAVELOBE_CHECK_SIZE(Material, 112);
+WAVELOBE_CHECK_SIZE(Material, 120);
 
 struct Texture {
     Uint32 kind;         // TEXTURE_x

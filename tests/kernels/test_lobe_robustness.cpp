@@ -32,6 +32,7 @@ std::vector<Material> random_materials(Random& random, std::size_t n) {
         m.alpha_u.value = i % 3 == 0 ? pick(corner_alphas) : random.log_between(1e-4F, 1.0F);
         m.alpha_v.value = i % 3 == 1 ? pick(corner_alphas) : random.log_between(1e-4F, 1.0F);
         m.exponent.value = i % 4 == 0 ? pick(exponents) : random.log_between(0.1F, 1e6F);
+        m.metallic.value = i % 7 == 0 ? 1.0F : random.uniform();
         m.diffuse_fresnel_internal = random.between(0.0F, 0.95F);
         m.specular_weight = random.uniform();
         materials.push_back(m);
