@@ -20,6 +20,8 @@
 namespace wavelobe {
 namespace {
 
+const std::map<std::string, Driver> driver_names = {{"one-kernel", Driver::one_kernel}, {"staged", Driver::staged}};
+
 struct RenderOptions {
     SceneArguments scene;
     std::string exr_path;
@@ -30,6 +32,7 @@ struct RenderOptions {
     std::string crop;  // empty: the scene's
     std::optional<std::uint32_t> seed;
     int threads = 0;
+    Driver driver = Driver::one_kernel;
     std::string device;
     bool quiet = false;
     bool verbose = false;
@@ -107,6 +110,7 @@ int run(const RenderOptions& options) {
     RenderSettings settings;
     settings.samples_per_pixel = scene.sample_count;
     settings.seed = scene.seed;
+    settings.driver = options.driver;
     Renderer renderer(device, scene, settings);
     if (interrupted()) return nothing_rendered();
 
@@ -167,6 +171,8 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
         ->check(CLI::Validator(is_window, ""));
     add("--stats", options->stats_path, "FILE.json", "Write timings and counts as JSON");
     add("--device", options->device, "TEXT", "Part of the name of the OpenCL device or platform");
+    add("--driver", options->driver, "NAME", "How stages are run: one-kernel, or staged (a launch each; slower)")
+        ->transform(CLI::CheckedTransformer(driver_names, CLI::ignore_case));
     command->add_flag("-q,--quiet", options->quiet, "Print nothing but the warnings of a faulty picture, and errors");
     command->add_flag("-v,--verbose", options->verbose, "Print timings and counts as a table");
     command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

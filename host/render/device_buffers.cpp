@@ -46,8 +46,7 @@ std::uint64_t DeviceBuffers::total_bytes() const {
     return sum;
 }
 
-void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few, std::size_t block_count,
-                           std::size_t words_per_block) {
+void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few) {
     if (!scene.features.few_triangles) add("bvh_nodes", bvh.nodes);
     add("few_vertices", few.vertices);
     add("few_triangles", few.triangles);
@@ -70,9 +69,12 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
-    insert("film", Buffer(device_, pixels * sizeof(FilmPixel)));
-    insert("headers", Buffer(device_, block_count * sizeof(BlockHeader)));
-    insert("blocks", Buffer(device_, block_count * words_per_block * sizeof(float)));
+    add_zeros<FilmPixel>("film", pixels);
+}
+
+void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {
+    add_zeros<BlockHeader>("headers", count);
+    add_zeros<float>("blocks", count * words_each);
 }
 
 }  // namespace wavelobe

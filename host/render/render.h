@@ -13,18 +13,25 @@
 
 namespace wavelobe {
 
+// How the host runs the stages. Both give the same bits.
+enum class Driver {
+    one_kernel,  // all stages in one launch: a work-item a compute thread, each rendering tile after tile. The faster on CPUs
+    staged,      // a launch a stage, over many blocks: stages can be timed and watched one by one
+};
+
 struct RenderSettings {
     int samples_per_pixel = 16;
     std::uint32_t seed = 0;
     int block_slots = 0;   // paths a block holds at once, a multiple of 16; 0: the default
+    Driver driver = Driver::one_kernel;
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
 };
 
 struct StageStats {
     std::string name;
-    std::uint64_t launches = 0;
+    std::uint64_t launches = 0;  // of the stage; within one kernel, its calls on blocks
     std::uint64_t items = 0;  // paths, rays or samples that went through
-    double seconds = 0.0;     // OpenCL event times
+    double seconds = 0.0;     // OpenCL event times; within one kernel, its share by the processor's cycle counter
 };
 
 // A sample that came out as NaN or infinite: it is left out of the picture and named here.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <random>
 
+#include "shared/block.h"
+
 namespace wavelobe {
 
 TileScheduler::TileScheduler(const RenderParameters& window, std::uint32_t samples_per_pixel,
-                             std::uint32_t samples_per_range)
+                             std::uint32_t samples_per_range, TileOrder order)
     : samples_per_pixel_(samples_per_pixel), samples_per_range_(samples_per_range) {
     for (std::uint32_t y = 0; y < window.window_height; y += TILE_WIDTH) {
         for (std::uint32_t x = 0; x < window.window_width; x += TILE_WIDTH) {
@@ -17,41 +19,23 @@ TileScheduler::TileScheduler(const RenderParameters& window, std::uint32_t sampl
         }
     }
     for (std::size_t i = 0; i < tiles_.size(); ++i) ready_.push_back(i);
-    // Threads take runs of blocks: neighbouring tiles, which cost alike, must not end up in the same one.
-    std::ranges::shuffle(ready_, std::mt19937{});
+    if (order == TileOrder::mixed) std::ranges::shuffle(ready_, std::mt19937{});
 }
 
-std::size_t TileScheduler::assign(std::span<BlockHeader> blocks) {
-    tile_of_block_.resize(blocks.size());
-    samples_of_block_.resize(blocks.size());
-    std::size_t busy = 0;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
-        BlockHeader& block = blocks[i];
-        if (block.path_count == 0 && !ready_.empty()) {
-            const std::size_t index = ready_.front();
-            ready_.pop_front();
-            Tile& tile = tiles_[index];
-            const std::uint32_t samples = std::min(samples_per_range_, samples_per_pixel_ - tile.next_sample);
-            block = BlockHeader{};
-            block.tile_x = tile.x;
-            block.tile_y = tile.y;
-            block.first_sample = tile.next_sample;
-            block.path_count = TILE_PIXELS * samples;
-            block.nonfinite_path = WAVELOBE_NONE;
-            tile.next_sample += samples;
-            tile_of_block_[i] = index;
-            samples_of_block_[i] = samples;
-        }
-        if (block.path_count != 0) ++busy;
-    }
-    return busy;
+std::optional<TileRange> TileScheduler::next() {
+    if (ready_.empty()) return std::nullopt;
+    const std::size_t index = ready_.front();
+    ready_.pop_front();
+    Tile& tile = tiles_[index];
+    const std::uint32_t samples = std::min(samples_per_range_, samples_per_pixel_ - tile.next_sample);
+    const TileRange range{tile.x, tile.y, tile.next_sample, samples, tile.pixels, index};
+    tile.next_sample += samples;
+    return range;
 }
 
-std::uint64_t TileScheduler::finish(std::size_t block) {
-    const std::size_t index = tile_of_block_[block];
-    const Tile& tile = tiles_[index];
-    if (tile.next_sample < samples_per_pixel_) ready_.push_back(index);
-    return std::uint64_t{tile.pixels} * samples_of_block_[block];
+void TileScheduler::finish(const TileRange& range) {
+    if (tiles_[range.tile].next_sample < samples_per_pixel_) ready_.push_back(range.tile);
+    samples_done_ += range.sample_count();
 }
 
 }  // namespace wavelobe

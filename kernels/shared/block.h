@@ -43,4 +43,35 @@ struct BlockHeader {
 };
 WAVELOBE_CHECK_SIZE(BlockHeader, 64);
 
+// A tile and a range of its samples, for render_tiles: what BlockHeader says of it when a block takes it up.
+struct TileJob {
+    Uint32 tile_x, tile_y;
+    Uint32 first_sample;
+    Uint32 path_count;
+    Uint32 nonfinite_path; // written when it is done
+};
+WAVELOBE_CHECK_SIZE(TileJob, 20);
+
+struct TileQueue {
+    Uint32 next;  // first job that no block has taken
+    Uint32 count;
+};
+WAVELOBE_CHECK_SIZE(TileQueue, 8);
+
+// What render_tiles did in one stage of one block's rounds.
+struct StageCounters {
+    Uint64 calls;  // that found something to do
+    Uint64 items;
+    Uint64 cycles; // of the time stamp counter; 0 on machines without one that kernels can read
+};
+WAVELOBE_CHECK_SIZE(StageCounters, 24);
+
+// Index of each stage.
+enum {
+#define STAGE(name, NAME) STAGE_##NAME,
+#include "stages/stages.def"
+#undef STAGE
+    STAGE_COUNT
+};
+
 #endif

@@ -1,7 +1,10 @@
 // Sorts traced paths by what comes next: each goes into the queue of the escaped, of those that hit a light, and of the
 // class of lobes that continues it. Paths with nothing left to do end here. Leaves the ray queue empty.
+#ifndef WAVELOBE_STAGES_SORT_PATHS_H
+#define WAVELOBE_STAGES_SORT_PATHS_H
+
 #include "stages/dimensions.h"
-#include "bsdf/material.h"
+#include "stages/scene_view.h"
 
 // Copies the lanes of `bits` of the ray queue's group at slot i to the end of another queue.
 INLINE uint move_paths(Queue to, uint at, Queue rays, uint i, Rgb throughput, uint bits) {
@@ -60,9 +63,9 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int hidd
 }
 #endif
 
-kernel void sort_paths(global struct BlockHeader *headers, global float *blocks, SURFACE_PARAMETERS TEXTURE_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    SurfaceView view = SURFACE_VIEW;
+INLINE uint run_sort_paths(Block block, const SceneView *scene) {
+    global const struct RenderParameters *parameters = scene->parameters;
+    SurfaceView view = scene->surfaces;
     Queue rays = QUEUE(block, RAYS);
     uint n = *rays.count;
     uint passed = 0u, escaped = 0u, emitted = 0u, delta = 0u, glossy = 0u, diffuse = 0u;
@@ -93,7 +96,8 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
 #if HAS_LOBE_CHOICE
         TracedPath path = read_traced_path(rays, i);
         path.hit = SELECT(found, path.hit, (UInt)0u);
-        c = choose_class(block, parameters->seed, view, &path, scattering, TEXTURE_ARGUMENTS);
+        c = choose_class(block, parameters->seed, view, &path, scattering, scene->textures,
+                         scene->texels);
 #else
         c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
         c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
@@ -125,4 +129,7 @@ kernel void sort_paths(global struct BlockHeader *headers, global float *blocks,
     count[QUEUE_DELTA] = delta;
     count[QUEUE_GLOSSY] = glossy;
     count[QUEUE_DIFFUSE] = diffuse;
+    return n;
 }
+
+#endif

@@ -1,5 +1,8 @@
 // Traces the shadow queue; a light that is seen adds its contribution to the path's radiance.
-#include "shapes/geometry_parameters.h"
+#ifndef WAVELOBE_STAGES_INTERSECT_SHADOW_H
+#define WAVELOBE_STAGES_INTERSECT_SHADOW_H
+
+#include "stages/scene_view.h"
 
 #if HAS_FEW_TRIANGLES
 // LANES rays at a time against everything. A path has one shadow ray at the most, so no two lanes share an id.
@@ -26,10 +29,12 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 }
 #endif
 
-kernel void intersect_shadow(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    Geometry geometry = GEOMETRY_VIEW;
+INLINE uint run_intersect_shadow(Block block, const SceneView *scene) {
     Queue shadow = QUEUE(block, SHADOW);
-    intersect_shadow_rays(geometry, block, shadow);
+    uint n = *shadow.count;
+    intersect_shadow_rays(scene->geometry, block, shadow);
     *shadow.count = 0u;
+    return n;
 }
+
+#endif

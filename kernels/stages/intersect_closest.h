@@ -1,5 +1,8 @@
 // Finds what each ray of the ray queue hits first, and writes it into the path's slot.
-#include "shapes/geometry_parameters.h"
+#ifndef WAVELOBE_STAGES_INTERSECT_CLOSEST_H
+#define WAVELOBE_STAGES_INTERSECT_CLOSEST_H
+
+#include "stages/scene_view.h"
 
 #if HAS_FEW_TRIANGLES
 // LANES rays at a time against everything.
@@ -29,8 +32,10 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 }
 #endif
 
-kernel void intersect_closest(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    Geometry geometry = GEOMETRY_VIEW;
-    intersect_rays(geometry, QUEUE(block, RAYS));
+INLINE uint run_intersect_closest(Block block, const SceneView *scene) {
+    Queue rays = QUEUE(block, RAYS);
+    intersect_rays(scene->geometry, rays);
+    return *rays.count;
 }
+
+#endif
