@@ -9,6 +9,8 @@
 
 #include "scene/gltf/cameras.h"
 #include "scene/gltf/environment.h"
+#include "scene/gltf/instancing.h"
+#include "scene/gltf/lights.h"
 #include "scene/gltf/materials.h"
 #include "scene/gltf/primitive.h"
 
@@ -32,11 +34,13 @@ public:
     Scene run() {
         tree_.place();
         meshes_.check();
-        add_shapes();
         materials_.check();
+        add_shapes();
+        add_punctual_lights(document_, tree_, scene_);
         place_camera(document_, tree_, {options_.width, options_.height}, scene_);
         if (!document_.faults.empty()) document_.faults.raise();
         add_light();
+        if (dropped_ > 0) document_.warn(fmt::format("{}: {} triangles without area are left out", document_.file, dropped_));
         scene_.warnings = document_.warnings;
         return std::move(scene_);
     }
@@ -48,29 +52,33 @@ private:
         for (const std::size_t node : tree_.shown) {
             const auto mesh = document_.nodes[node].index("mesh", document_.meshes.size(), "meshes");
             if (!mesh) continue;
+            const std::vector<glm::dmat4> copies = instances_of(document_, accessors_, node);
             for (const Primitive& primitive : meshes_.primitives(*mesh)) {
-                triangles += primitive.mesh.triangles.size();
+                triangles += primitive.mesh.triangles.size() * copies.size();
                 if (triangles > most_triangles) {
                     document_.nodes[node].fault(fmt::format("brings the scene beyond {} triangles", most_triangles), "show less of it");
                     return;
                 }
-                if (document_.faults.empty()) add_shape(node, *mesh, primitive);
+                if (!document_.faults.empty()) continue;
+                for (const glm::dmat4& copy : copies) add_shape(node, *mesh, primitive, tree_.world[node] * copy);
             }
         }
     }
 
-    void add_shape(std::size_t node, std::size_t mesh, const Primitive& primitive) {
+    void add_shape(std::size_t node, std::size_t mesh, const Primitive& primitive, const glm::dmat4& to_world) {
         MeshOptions options;
-        options.to_world = tree_.world[node];
+        options.to_world = to_world;
         const bool mirrored = glm::determinant(glm::dmat3(options.to_world)) < 0.0;
         options.face_normals = primitive.mesh.normals.empty();
         options.flip_normals = mirrored && options.face_normals;
-        PreparedMesh prepared = prepare_mesh(MeshSource(primitive.mesh), options);
-        const std::string name = document_.nodes[node].text("name", document_.meshes[mesh].text("name", fmt::format("mesh {}", mesh)));
-        if (prepared.dropped > 0)
-            document_.warn(fmt::format("{}: {} triangles without area are left out of `{}`", document_.file, prepared.dropped, name));
-        if (prepared.mesh.triangles.empty()) return;
         const Appearance& appearance = materials_.appearance(primitive.material);
+        MeshSource source = primitive.mesh;
+        if (appearance.uv_set == 1 && !primitive.second_uvs.empty()) source.uvs = primitive.second_uvs;
+        PreparedMesh prepared = prepare_mesh(std::move(source), options);
+        const std::string name = document_.nodes[node].text("name", document_.meshes[mesh].text("name", fmt::format("mesh {}", mesh)));
+        dropped_ += prepared.dropped;
+        if (prepared.mesh.triangles.empty()) return;
+        for (const glm::vec4& color : primitive.colors) prepared.mesh.colors.emplace_back(color);
         Shape& shape = scene_.shapes.emplace_back();
         shape.geometry = std::move(prepared.mesh);
         shape.material = appearance.surface;
@@ -91,6 +99,7 @@ private:
     NodeTree tree_;
     Meshes meshes_;
     Materials materials_;
+    std::size_t dropped_ = 0;  // triangles without area
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ INLINE MetallicRoughnessLobe metallic_roughness_load(MaterialInput in) {
 INLINE Rgb metallic_roughness_fresnel(MetallicRoughness m, Float cosine) {
     Float weight = schlick_weight(cosine);
     Rgb dielectric = dielectric_reflectance(m, weight);
-    Rgb metal = schlick_from(m.base, weight);
+    Rgb metal = schlick_from(m.base, ONE, weight);
     return add(scale(dielectric, 1.0f - m.metallic), scale(metal, m.metallic));
 }
 

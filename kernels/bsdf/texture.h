@@ -70,8 +70,9 @@ INLINE TexelQuad texel_quad(TextureBuffers b, UInt i, UInt kind, TextureCoordina
     q.v = SELECT(q.filtered, y - row, ZERO);
     Float column0 = wrap_texel(column, width, kind);
     Float column1 = wrap_texel(column + 1.0f, width, kind);
-    Float row0 = wrap_texel(row, height, kind);
-    Float row1 = wrap_texel(row + 1.0f, height, kind);
+    UInt row_kind = SELECT((kind & (UInt)TEXTURE_OTHER_ROWS) != (UInt)0u, kind >> TEXTURE_ROW_SHIFT, kind);
+    Float row0 = wrap_texel(row, height, row_kind);
+    Float row1 = wrap_texel(row + 1.0f, height, row_kind);
     q.offset[0] = texel_offset(first, width, column0, row0);
     q.offset[1] = texel_offset(first, width, column1, row0);
     q.offset[2] = texel_offset(first, width, column0, row1);

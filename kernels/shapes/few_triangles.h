@@ -10,12 +10,25 @@
 #include "core/rounding.h"
 #include "shared/bvh.h"
 #include "shared/scene.h"
+#if HAS_OPACITY
+#include "shapes/opacity.h"
+#endif
 
 typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
     uint vertex_count, triangle_count;
+#if HAS_OPACITY
+    OpacityView opacity;
+#endif
 } FewTriangles;
+
+// Where opacity lets some rays pass, each has a key.
+#if HAS_MASKS
+#define KEY_PARAMETER , UInt key
+#else
+#define KEY_PARAMETER
+#endif
 
 // The vertices as the rays see them.
 typedef struct {
@@ -81,13 +94,22 @@ INLINE Int hit_triangle(const TurnedVertices *v, global const struct FewTriangle
     return hit & (*distance > few_distance_error(v, a, b, c, t, *inverse));
 }
 
+#if HAS_MASKS
+// Lanes whose ray passes triangle `index` where it hits it.
+INLINE Int passes_few(FewTriangles g, uint index, UInt key, const TriangleTest *t, Float inverse) {
+    uint primitive = g.triangles[index].primitive;
+    if (!(primitive & PRIMITIVE_MASKED)) return !TRUE_MASK;
+    return passes_triangle(g.opacity, key, (UInt)(primitive & ~PRIMITIVE_MASKED), t->wb * inverse, t->wc * inverse);
+}
+#endif
+
 typedef struct {
     Float t, u, v;
     UInt slot; // HIT_NONE: nothing
 } LaneHit;
 
 // The nearest hit of each ray in (0, limit).
-INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit) {
+INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit KEY_PARAMETER) {
     TurnedVertices turned;
     turn_vertices(g, origin, direction, &turned);
     LaneHit nearest = {limit, ZERO, ZERO, (UInt)HIT_NONE};
@@ -96,6 +118,9 @@ INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float
         Float distance, inverse;
         Int hit = hit_triangle(&turned, g.triangles + i, nearest.t, &t, &distance, &inverse);
         if (!any_lane(hit)) continue;
+#if HAS_MASKS
+        hit &= !passes_few(g, i, key, &t, inverse);
+#endif
         nearest.t = SELECT(hit, distance, nearest.t);
         nearest.u = SELECT(hit, t.wb * inverse, nearest.u);
         nearest.v = SELECT(hit, t.wc * inverse, nearest.v);
@@ -105,14 +130,19 @@ INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float
 }
 
 // Lanes of `wanted` whose ray hits anything in (0, limit).
-INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, Int wanted) {
+INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit,
+                      Int wanted KEY_PARAMETER) {
     TurnedVertices turned;
     turn_vertices(g, origin, direction, &turned);
     Int blocked = !TRUE_MASK;
     for (uint i = 0u; i < g.triangle_count; i++) {
         TriangleTest t;
         Float distance, inverse;
-        blocked |= hit_triangle(&turned, g.triangles + i, limit, &t, &distance, &inverse);
+        Int hit = hit_triangle(&turned, g.triangles + i, limit, &t, &distance, &inverse);
+#if HAS_MASKS
+        if (any_lane(hit)) hit &= !passes_few(g, i, key, &t, inverse);
+#endif
+        blocked |= hit;
         if (!any_lane(wanted & !blocked)) break;
     }
     return blocked & wanted;

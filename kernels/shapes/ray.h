@@ -10,6 +10,9 @@ typedef struct {
     float ox, oy, oz;
     float dx, dy, dz; // unit
     float limit;
+#if HAS_MASKS
+    uint key; // what is drawn where opacity lets some rays pass (shapes/opacity.h)
+#endif
 } Ray;
 
 typedef struct {

@@ -21,7 +21,7 @@ kernel void intersect(global const struct Analytic *shapes, global const uint *s
                       global float *t) {
     size_t i = get_global_id(0);
     Ray r = {rays[i], rays[i + n], rays[i + 2 * n], rays[i + 3 * n], rays[i + 4 * n], rays[i + 5 * n], rays[i + 6 * n]};
-    t[i] = intersect_analytic(shapes + shape[i], &r, r.limit);
+    t[i] = intersect_analytic(shapes + shape[i], &r, 0.0f, r.limit);
 }
 
 INLINE void store3(global float *p, uint n, Vec3 v) {

@@ -49,7 +49,7 @@ public:
         : scene_(flatten_scene(scene)), buffers_(device()) {
         const Bvh bvh = build_scene_bvh(scene_, 1);
         for (const TriangleBlock& block : bvh.blocks) {
-            primitives_.insert(primitives_.end(), block.primitive, block.primitive + BVH_WIDTH);
+            for (const std::uint32_t primitive : block.primitive) primitives_.push_back(primitive & ~PRIMITIVE_MASKED);
         }
         const FewTriangleSet set = few ? find_few_triangles(bvh) : FewTriangleSet{};
         scene_.features.few_triangles = few;
