@@ -75,6 +75,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_UVS", f.uvs);
+    out.define("HAS_VERTEX_COLORS", f.vertex_colors);
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TRANSMISSION", f.transmission);
@@ -176,6 +177,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(textured_emitters, "textured_emitters");
     add(smooth_normals, "smooth_normals");
     add(uvs, "uvs");
+    add(vertex_colors, "vertex_colors");
     add(analytic, "analytic_shapes");
     add(anisotropy, "anisotropy");
     add(transmission, "transmission");

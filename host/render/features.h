@@ -32,6 +32,7 @@ struct FeatureSet {
     bool textured_emitters = false;
     bool smooth_normals = false;
     bool uvs = false;
+    bool vertex_colors = false;
     bool analytic = false;
     bool anisotropy = false;
     bool transmission = false;

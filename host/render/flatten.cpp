@@ -82,6 +82,7 @@ private:
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
         s.first_uv = WAVELOBE_NONE;
+        s.first_color = WAVELOBE_NONE;
         s.first_light = WAVELOBE_NONE;
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
@@ -123,6 +124,10 @@ private:
             out_.features.smooth_normals = true;
         }
         if (!mesh.uvs.empty()) s.first_uv = offset(out_.uvs.size(), shape);
+        if (!mesh.colors.empty()) {
+            s.first_color = offset(out_.colors.size(), shape);
+            out_.features.vertex_colors = true;
+        }
         const auto index = static_cast<std::uint32_t>(out_.shapes.size());
         for (const glm::uvec3& t : mesh.triangles) {
             out_.triangles.push_back({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]});
@@ -131,6 +136,7 @@ private:
                 const std::uint32_t vertex = t[corner];
                 if (!mesh.normals.empty()) append(out_.normals, mesh.normals[vertex]);
                 if (!mesh.uvs.empty()) append(out_.uvs, mesh.uvs[vertex]);
+                if (!mesh.colors.empty()) append(out_.colors, mesh.colors[vertex]);
             }
         }
         if (emits(shape)) {

@@ -29,6 +29,7 @@ struct DeviceScene {
     std::vector<DeviceShape> shapes;
     std::vector<float> normals;
     std::vector<float> uvs;
+    std::vector<float> colors;
     std::vector<Analytic> analytics;
 
     // appearance
