@@ -58,7 +58,7 @@ inline Material random_material(Random& random, const std::vector<LobeParameters
     m.eta = {eta, random.between(0.05F, 4.0F), pick(random, corner_etas)};
     m.k = {random.between(0.0F, 10.0F), 0.0F, random.log_between(1e-3F, 10.0F)};
     m.exponent.value = random.uniform() < 0.3F ? pick(random, corner_exponents) : random.log_between(0.1F, 1e6F);
-    m.metallic.value = i % 7 == 0 ? 1.0F : random.uniform();
+    m.metallic.value = random.uniform() < 0.3F ? 1.0F : random.uniform();
     return m;
 }
 
