@@ -10,6 +10,7 @@
 #include "scene/file.h"
 #include "scene/mitsuba/elements.h"
 #include "scene/mitsuba/substitution.h"
+#include "scene/mitsuba/upgrade.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t max_include_depth = 15;
+// Of objects in objects, by nesting and by reference: far beyond any scene, and no strain on the stack.
+constexpr std::size_t max_object_depth = 64;
 
 // One file while it is being read.
 struct SourceFile {
@@ -77,7 +80,10 @@ private:
             return faults_.add(file.place(result.offset), "",
                                std::string("not well-formed XML: ") + result.description(), "correct the XML");
         open_files_.push_back(canonical);
+        const bool outer_legacy = legacy_;
+        legacy_ = false;
         read_root(xml.document_element(), file, parent);
+        legacy_ = outer_legacy;
         open_files_.pop_back();
     }
 
@@ -124,12 +130,7 @@ private:
                         "cannot read the version `" + *version + "`; expected three numbers such as 3.0.0", "");
             return false;
         }
-        if (parts[0] < 2) {
-            faults_.add(element.place, label,
-                        "files of version " + *version + " are not supported yet; expected 2.x.y or 3.x.y",
-                        "convert the scene to the format of Mitsuba 3");
-            return false;
-        }
+        legacy_ = parts[0] < 2;
         return true;
     }
 
@@ -143,6 +144,7 @@ private:
         };
         for (const pugi::xml_attribute& attribute : node.attributes())
             element.attributes.emplace_back(attribute.name(), substitution_.apply(attribute.value(), undefined));
+        if (legacy_) upgrade_element(element);
         return element;
     }
 
@@ -196,7 +198,15 @@ private:
                             std::to_string(ids_[object.id]->place.line) + " of " + *ids_[object.id]->place.file,
                         "give every object an id of its own");
         parent.children.push_back({element.text("name"), &object, "", object.place});
-        read_children(node, file, object);
+        if (++object_depth_ <= max_object_depth) read_children(node, file, object);
+        else refuse_depth(object.place, object.label());
+        --object_depth_;
+        if (legacy_) upgrade_object(object, document_.warnings);
+    }
+
+    void refuse_depth(const Place& place, const std::string& label) {
+        faults_.add(place, label, "objects are nested more than " + std::to_string(max_object_depth) + " deep",
+                    "flatten the scene");
     }
 
     void read_property(const pugi::xml_node& node, const Element& element, const SourceFile& file, Object& parent) {
@@ -212,7 +222,25 @@ private:
         if (std::any_of(parent.properties.begin(), parent.properties.end(), same))
             return faults_.add(element.place, element.label(),
                                "the property is given more than once in " + parent.label(), "keep one of them");
-        parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
+        if (element.tag == "spectrum" && element.attribute("filename") != nullptr)
+            parent.properties.push_back({name, read_spectrum_file(element), element.place});
+        else parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
+    }
+
+    Value read_spectrum_file(const Element& element) {
+        if (!check_attributes(element, {"name", "filename"}, {}, faults_) || element.broken) return Unreadable{};
+        const std::string path = document_.find_file(element.text("filename"), element.place);
+        if (path.empty()) {
+            faults_.add(element.place, element.label(), "the file `" + element.text("filename") + "` does not exist",
+                        "check the name, or add its folder with <path>");
+            return Unreadable{};
+        }
+        try {
+            return load_spd(path);
+        } catch (const InputError& error) {
+            faults_.add(error, element.place, element.label());
+            return Unreadable{};
+        }
     }
 
     void read_reference(const Element& element, Object& parent) {
@@ -288,6 +316,10 @@ private:
     void refuse_cycles(Object& object, std::set<const Object*>& visited, std::vector<const Object*>& path) {
         path.push_back(&object);
         for (Child& child : object.children) {
+            if (child.object != nullptr && path.size() > max_object_depth) {
+                refuse_depth(child.place, object.label());
+                child.object = nullptr;
+            }
             if (child.object == nullptr || visited.count(child.object) != 0) continue;
             if (std::find(path.begin(), path.end(), child.object) != path.end()) {
                 faults_.add(child.place, "<ref>",
@@ -306,6 +338,8 @@ private:
     Substitution substitution_;
     std::map<std::string, Object*> ids_;
     std::vector<std::string> open_files_;
+    std::size_t object_depth_ = 0;
+    bool legacy_ = false;  // the file that is being read is of Mitsuba 0.x
 };
 
 }  // namespace
