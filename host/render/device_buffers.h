@@ -19,8 +19,16 @@ class DeviceBuffers {
 public:
     explicit DeviceBuffers(const Device& device) : device_(device) {}
 
-    void upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few, std::size_t block_count,
-                std::size_t words_per_block);
+    // The scene and the film.
+    void upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few);
+
+    // Blocks without work.
+    void add_blocks(std::size_t count, std::size_t words_each);
+
+    template <class T>
+    void add_zeros(const std::string& name, std::size_t count) {
+        insert(name, Buffer(device_, count * sizeof(T)));
+    }
 
     const BufferTable& table() const { return table_; }
     std::uint64_t total_bytes() const;

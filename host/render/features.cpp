@@ -35,6 +35,17 @@ constexpr std::array<LightEntry, LIGHT_KIND_COUNT> light_list = {{
 #undef LIGHT
 }};
 
+struct StageEntry {
+    const char* name;
+    const char* macro;
+};
+
+constexpr std::array<StageEntry, STAGE_COUNT> stage_list = {{
+#define STAGE(name, NAME) {#name, #NAME},
+#include "stages/stages.def"
+#undef STAGE
+}};
+
 bool has_bit(std::uint32_t mask, std::size_t bit) { return ((mask >> bit) & 1U) != 0; }
 
 bool has_reach(const FeatureSet& features, Reach reach) {
@@ -52,6 +63,7 @@ public:
     void begin_list(const std::string& name) { text_ << "#define " << name << "(X)"; }
     void list_item(const char* name, const char* macro) { text_ << " X(" << name << ", " << macro << ")"; }
     void end_list() { text_ << "\n"; }
+    void line(const std::string& text) { text_ << text << "\n"; }
     std::string text() const { return text_.str(); }
 
 private:
@@ -71,7 +83,11 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_MASKS", f.masks);
+    out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
     out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
@@ -168,35 +184,56 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(error_estimate, "error_estimate");
+    add(masks, "masks");
+    add(veiled_emitters, "veiled_emitters");
     add(few_triangles, "few_triangles");
     return out;
 }
 
-std::vector<std::string> FeatureSet::stages() const {
-    std::vector<std::string> out = {"generate", "intersect_closest", "sort_paths"};
-    const auto add = [&out](bool present, const char* name) {
-        if (present) out.emplace_back(name);
-    };
+bool FeatureSet::has_stage(std::uint32_t stage) const {
     const bool glossy = has_lobe_class(LOBE_CLASS_GLOSSY);
     const bool diffuse = has_lobe_class(LOBE_CLASS_DIFFUSE);
-    add(has_environment(), "shade_escaped");
-    add(has_surface_lights(), "shade_emitted");
-    add(has_lobe_class(LOBE_CLASS_DELTA), "scatter_delta");
-    add(glossy, "scatter_glossy");
-    add(diffuse, "scatter_diffuse");
-    add(light_count > 0 && (glossy || diffuse), "intersect_shadow");
-    out.emplace_back("accumulate");
+    switch (stage) {
+        case STAGE_INTERSECT_SHADOW: return light_count > 0 && (glossy || diffuse);
+        case STAGE_SHADE_ESCAPED: return has_environment();
+        case STAGE_SHADE_EMITTED: return has_surface_lights();
+        case STAGE_SCATTER_DELTA: return has_lobe_class(LOBE_CLASS_DELTA);
+        case STAGE_SCATTER_GLOSSY: return glossy;
+        case STAGE_SCATTER_DIFFUSE: return diffuse;
+        default: return true;
+    }
+}
+
+std::vector<std::string> FeatureSet::stages() const {
+    std::vector<std::string> out;
+    for (std::uint32_t i = 0; i < STAGE_COUNT; ++i) {
+        if (has_stage(i)) out.emplace_back(stage_list[i].name);
+    }
     return out;
 }
 
-std::string program_source(const FeatureSet& features, int lanes, int block_slots) {
+const char* stage_name(std::uint32_t stage) { return stage_list[stage].name; }
+
+std::string program_source(const FeatureSet& features, int lanes, int block_slots, Driver driver) {
     SourceWriter out;
     out.define("LANES", lanes);
     out.define_unsigned("BLOCK_SLOTS", block_slots);
     write_macros(out, features);
     write_lobes(out, features);
     write_lights(out, features);
-    for (const std::string& stage : features.stages()) out.include("stages/" + stage + ".cl");
+    for (const std::string& stage : features.stages()) out.include("stages/" + stage + ".h");
+    if (driver == Driver::one_kernel) {
+        out.begin_list("SCENE_STAGES");
+        for (std::uint32_t i = 0; i < STAGE_COUNT; ++i) {
+            if (features.has_stage(i)) out.list_item(stage_list[i].name, stage_list[i].macro);
+        }
+        out.end_list();
+        out.include("stages/render_tiles.h");
+    } else {
+        out.include("stages/stage_kernel.h");
+        for (const std::string& stage : features.stages()) out.line("STAGE_KERNEL(" + stage + ")");
+    }
     return out.text();
 }
 

@@ -41,6 +41,9 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool error_estimate = false; // the film is kept in two independent halves
+    bool masks = false;            // rays pass some primitives, by their opacity
+    bool veiled_emitters = false;  // paths go on behind some emitters
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
 
@@ -50,15 +53,19 @@ struct FeatureSet {
 
     // Names of everything compiled in, for people and tests.
     std::vector<std::string> names() const;
+    bool has_stage(std::uint32_t stage) const;  // STAGE_x
     // Stages in order of the pipeline.
     std::vector<std::string> stages() const;
 };
 
-// The source of the scene's program: feature macros, the headers of its lobes and lights, and its stages.
-std::string program_source(const FeatureSet& features, int lanes, int block_slots);
+// The source of the scene's program: feature macros, the headers of its lobes and lights, and its stages, a kernel each or
+// all in one.
+std::string program_source(const FeatureSet& features, int lanes, int block_slots, Driver driver = Driver::staged);
 
 // Floats a block takes in the buffer of blocks (BLOCK_WORDS of kernels/core/block.h).
 std::size_t block_words(const FeatureSet& features, int block_slots);
+
+const char* stage_name(std::uint32_t stage);
 
 // Class of each lobe (LOBE_CLASS_x) and its name.
 std::uint32_t lobe_class(std::uint32_t lobe);

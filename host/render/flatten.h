@@ -16,6 +16,7 @@ namespace wavelobe {
 using DeviceMaterial = ::Material;
 using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
+using DeviceOpacity = ::Opacity;
 
 struct DeviceScene {
     FeatureSet features;
@@ -32,6 +33,7 @@ struct DeviceScene {
 
     // appearance
     std::vector<DeviceMaterial> materials;
+    std::vector<DeviceOpacity> opacities;  // one a shape, or none at all
     std::vector<DeviceTexture> textures;
     std::vector<float> texels;
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,18 +14,27 @@
 
 namespace wavelobe {
 
+// How the host runs the stages. Both give the same bits.
+enum class Driver {
+    one_kernel,  // all stages in one launch: a work-item a compute thread, each rendering tile after tile. The faster on CPUs
+    staged,      // a launch a stage, over many blocks: stages can be timed and watched one by one
+};
+
 struct RenderSettings {
     int samples_per_pixel = 16;
     std::uint32_t seed = 0;
     int block_slots = 0;   // paths a block holds at once, a multiple of 16; 0: the default
+    Driver driver = Driver::one_kernel;
+    double target_error = 0.0;  // relMSE at which a tile takes no more samples; 0: all tiles take all
+    double time_limit = 0.0;    // seconds of rendering; 0: none
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
 };
 
 struct StageStats {
     std::string name;
-    std::uint64_t launches = 0;
+    std::uint64_t launches = 0;  // of the stage; within one kernel, its calls on blocks
     std::uint64_t items = 0;  // paths, rays or samples that went through
-    double seconds = 0.0;     // OpenCL event times
+    double seconds = 0.0;     // OpenCL event times; within one kernel, its share by the processor's cycle counter
 };
 
 // A sample that came out as NaN or infinite: it is left out of the picture and named here.
@@ -38,6 +48,7 @@ struct RenderStats {
     std::map<std::string, double> setup_parts;  // seconds: parse, bvh, tables, program_build, first_launches
     double render_seconds = 0.0;                // without set-up
     std::uint64_t samples = 0;
+    std::optional<double> estimated_error;      // relMSE of the picture, where a target was set
     std::uint64_t nan_samples = 0;
     std::vector<NonFiniteSample> nan_examples;  // the first few
     std::map<std::string, std::uint64_t> rays;  // camera, bounce, shadow
@@ -61,7 +72,7 @@ struct Image {
 
 struct Progress {
     std::uint64_t samples_done = 0;
-    std::uint64_t samples_total = 0;
+    double share = 0.0;    // of the work, as far as it can be told
     double seconds = 0.0;  // of rendering
 };
 

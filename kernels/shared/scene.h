@@ -22,6 +22,8 @@ WAVELOBE_CHECK_SIZE(Shape, 32);
 #define SHAPE_HAS_GLOSSY 2u
 #define SHAPE_HAS_DIFFUSE 4u
 #define SHAPE_EMITS 8u
+#define SHAPE_MASKED 16u // rays ask for its opacity
+#define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
 
 // Perspective camera, film window, and the integrator's limits.
 struct RenderParameters {

@@ -4,10 +4,12 @@
 
 #ifdef __OPENCL_C_VERSION__
 typedef uint Uint32;
+typedef ulong Uint64;
 #define WAVELOBE_CHECK_SIZE(type, bytes) typedef char check_size_of_##type[sizeof(struct type) == (bytes) ? 1 : -1]
 #else
 #include <cstdint>
 using Uint32 = std::uint32_t;
+using Uint64 = std::uint64_t;
 #define WAVELOBE_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes), "host and kernels must agree")
 #endif
 

@@ -3,11 +3,10 @@
 #ifndef WAVELOBE_STAGES_SCATTER_SMOOTH_H
 #define WAVELOBE_STAGES_SCATTER_SMOOTH_H
 
-#include "bsdf/material.h"
 #include "sampling/mis.h"
 #include "stages/continue_path.h"
+#include "stages/scene_view.h"
 #if HAS_LIGHTS
-#include "lights/choose.h"
 
 // How far a shadow ray may look, as a share of its length: short of the light's own surface by the rounding of a hit's
 // distance. GAMMA(16) covers the shear, the three products and sums and the division of the triangle test.
@@ -46,15 +45,9 @@ INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId s
     append_field(shadow, SHADOW_T, at, SELECT(light.at_infinity, (Float)INFINITY, distance * SHADOW_REACH), bits);
     append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
     append_uint(shadow, SHADOW_ID, at, path->id, bits);
+    append_uint(shadow, SHADOW_FROM, at, surface->primitive, bits);
     return at + popcount(bits);
 }
-
-#define SMOOTH_PARAMETERS SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS
-#define SMOOTH_LIGHTS LIGHT_VIEW
-#else
-typedef struct { int none; } LightInput;
-#define SMOOTH_PARAMETERS SURFACE_PARAMETERS TEXTURE_PARAMETERS
-#define SMOOTH_LIGHTS {0}
 #endif
 
 // A direction from the lobe of the queue's class.
@@ -70,20 +63,19 @@ INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId samp
 }
 
 // The body of both stages: `lobe_class` is a constant.
-INLINE void scatter_smooth(uint lobe_class, Block block, Queue paths, SurfaceView view, LightInput lights,
-                           global const struct RenderParameters *parameters, global const struct Texture *textures,
-                           global const float *texels) {
+INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const SceneView *scene) {
+    global const struct RenderParameters *parameters = scene->parameters;
     Queue rays = QUEUE(block, RAYS);
     uint n = *paths.count, appended = *rays.count, shadows = block.header->count[QUEUE_SHADOW];
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(paths, i);
-        Surface surface = load_surface(view, &path);
-        MaterialInput in = material_input(&surface, view.materials, textures, texels);
+        Surface surface = load_surface(scene->surfaces, &path);
+        MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
         SampleId sample = path_sample_id(block, path.id, parameters->seed);
 #if HAS_LIGHTS
-        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, lights, sample, parameters->light_count, &path,
-                                      &surface, &lobes);
+        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene->lights, sample, parameters->light_count,
+                                      &path, &surface, &lobes);
 #endif
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
@@ -98,6 +90,7 @@ INLINE void scatter_smooth(uint lobe_class, Block block, Queue paths, SurfaceVie
     *rays.count = appended;
     *paths.count = 0u;
     block.header->count[QUEUE_SHADOW] = shadows;
+    return n;
 }
 
 #endif

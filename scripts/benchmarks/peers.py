@@ -9,65 +9,25 @@ thread pool hangs with a single thread, so it keeps at least two.
 import argparse
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
 import time
-import xml.etree.ElementTree as xml
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-WAVELOBE = ROOT / "build/release/bin/wavelobe"
-WORK = ROOT / "build/benchmark"
-DATA = Path(os.environ.get("WAVELOBE_DATA", ROOT.parent / "shared/data"))
+from common import DATA, comparable_scene, pin, processor, run_wavelobe
+
 SCENES = [DATA / "scenes/cornell-box/scene_v3.xml", DATA / "scenes/veach-bidir/scene.xml"]
-
-
-def comparable_scene(source, size, spp):
-    """A copy of the scene at another size, with a box filter, beside links to the files it names."""
-    folder = WORK / f"{source.parent.name}-{size}-{spp}"
-    folder.mkdir(parents=True, exist_ok=True)
-    for sibling in source.parent.resolve().iterdir():
-        link = folder / sibling.name
-        if sibling.name != source.name and not link.exists():
-            link.symlink_to(sibling)
-    tree = xml.parse(source)
-    for film in tree.iter("film"):
-        for name in ("width", "height"):
-            for value in film.findall(f"integer[@name='{name}']"):
-                value.set("value", str(size))
-        for old in film.findall("rfilter"):
-            film.remove(old)
-        xml.SubElement(film, "rfilter", type="box")
-    for sampler in tree.iter("sampler"):
-        sampler.set("type", "independent")
-        for value in sampler.findall("integer[@name='sample_count']"):
-            value.set("value", str(spp))
-    path = folder / source.name
-    tree.write(path)
-    return path
-
-
-def pin(threads):
-    """Restricts this process, before it starts any thread, to that many of the cores it may use."""
-    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:threads])
 
 
 class Wavelobe:
     def __init__(self, scene, threads):
         self.scene = scene
         self.threads = threads
-        self.stats = scene.with_suffix(f".{threads}.json")
         self.picture = scene.with_suffix(f".{threads}.exr")
 
     def render(self, seed):
-        command = [WAVELOBE, "render", self.scene, "-o", self.picture, "--stats", self.stats, "--quiet",
-                   "--seed", str(seed), "--threads", str(self.threads)]
-        subprocess.run(command, check=True, preexec_fn=lambda: pin(self.threads))
-        stats = json.loads(self.stats.read_text())
-        if stats["nan_samples"]:
-            print(f"warning: {stats['nan_samples']} NaN samples", file=sys.stderr)
+        stats = run_wavelobe(self.scene, self.picture, self.threads, "--seed", seed)
         return stats["samples"] / stats["render_seconds"]
 
 
@@ -145,13 +105,6 @@ def measure(source, threads, options):
     return {"scene": source.parent.name, "threads": threads, "size": options.size, "spp": options.spp,
             "samples_per_second": median, "ratio": median["wavelobe"] / median["mitsuba"],
             "mean_radiance_ratio": mean_ratio, "rounds": rates, "mitsuba_version": theirs.version}
-
-
-def processor():
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
 
 
 def main():

@@ -27,6 +27,7 @@ struct Division {
     int block_slots = 0;
     int lanes = 16;
     std::uint32_t seed = 7;
+    Driver driver = Driver::one_kernel;
 };
 
 void write_picture(const Scene& scene, const Division& division, const std::string& path) {
@@ -36,6 +37,7 @@ void write_picture(const Scene& scene, const Division& division, const std::stri
     settings.seed = division.seed;
     settings.block_slots = division.block_slots;
     settings.lanes = division.lanes;
+    settings.driver = division.driver;
     Renderer renderer(device, scene, settings);
     if (!renderer.render() || renderer.stats().nan_samples != 0) throw std::runtime_error("not all samples are there");
     const Image image = renderer.image();
@@ -98,6 +100,8 @@ TEST(Determinism, PictureIsNotBlack) {
 }
 
 TEST(Determinism, OneThread) { expect_same({.threads = 1}); }
+TEST(Determinism, SevenThreads) { expect_same({.threads = 7}); }
+TEST(Determinism, ALaunchAStage) { expect_same({.driver = Driver::staged}); }
 // Both at once: every combination is a program of its own to compile.
 TEST(Determinism, EightLanesAndSmallBlocks) { expect_same({.block_slots = 64, .lanes = 8}); }
 TEST(Determinism, OneLaneAndLargeBlocks) { expect_same({.block_slots = 1024, .lanes = 1}); }

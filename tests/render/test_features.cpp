@@ -42,15 +42,15 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 // Text of a header is marked by its path; what stands behind a feature of 0 is not compiled.
 TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
     const std::string text = program_text(diffuse_scene());
-    for (const char* present : {"\"bsdf/lambert.h\"", "\"lights/parallelogram.h\"", "kernel void scatter_diffuse",
-                                "kernel void shade_emitted", "kernel void intersect_shadow"}) {
+    for (const char* present : {"\"bsdf/lambert.h\"", "\"lights/parallelogram.h\"", "uint run_scatter_diffuse",
+                                "uint run_shade_emitted", "uint run_intersect_shadow"}) {
         EXPECT_TRUE(contains(text, present)) << present;
     }
     for (const char* absent :
          {"\"bsdf/microfacet.h\"", "\"bsdf/fresnel.h\"", "\"bsdf/rough_conductor.h\"", "\"bsdf/dielectric.h\"",
           "\"bsdf/mirror.h\"", "\"bsdf/phong.h\"", "\"bsdf/plastic_coat.h\"", "\"lights/envmap.h\"",
-          "\"lights/constant.h\"", "\"lights/sphere.h\"", "\"lights/spot.h\"", "kernel void scatter_delta",
-          "kernel void scatter_glossy", "kernel void shade_escaped"}) {
+          "\"lights/constant.h\"", "\"lights/sphere.h\"", "\"lights/spot.h\"", "uint run_scatter_delta",
+          "uint run_scatter_glossy", "uint run_shade_escaped"}) {
         EXPECT_FALSE(contains(text, absent)) << absent;
     }
     for (const char* feature : {"TEXTURES", "TEXTURED_EMITTERS", "SMOOTH_NORMALS", "UVS", "ANALYTIC", "ANISOTROPY",
@@ -67,8 +67,8 @@ TEST(Features, AreNamed) {
 }
 
 TEST(Features, StagesAreThoseThatHaveWork) {
-    const std::vector<std::string> expected{"generate",        "intersect_closest", "sort_paths", "shade_emitted",
-                                            "scatter_diffuse", "intersect_shadow",  "accumulate"};
+    const std::vector<std::string> expected{"generate",      "intersect_closest", "sort_paths", "intersect_shadow",
+                                            "shade_emitted", "scatter_diffuse",   "accumulate"};
     EXPECT_EQ(flatten_scene(diffuse_scene()).features.stages(), expected);
 }
 

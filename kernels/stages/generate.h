@@ -1,7 +1,12 @@
 // Starts paths: fills the free slots of the ray queue with camera rays of the block's next path ids.
+#ifndef WAVELOBE_STAGES_GENERATE_H
+#define WAVELOBE_STAGES_GENERATE_H
+
 #include "core/math.h"
 #include "sampling/warps.h"
+#include "shared/bvh.h"
 #include "stages/dimensions.h"
+#include "stages/scene_view.h"
 
 INLINE Vec3 transform_vector(global const struct Affine *a, Vec3 v) {
     return vec3(madd(v.x, (Float)a->m[0], madd(v.y, (Float)a->m[1], v.z * a->m[2])),
@@ -9,11 +14,9 @@ INLINE Vec3 transform_vector(global const struct Affine *a, Vec3 v) {
                 madd(v.x, (Float)a->m[8], madd(v.y, (Float)a->m[9], v.z * a->m[10])));
 }
 
-kernel void generate(global struct BlockHeader *headers, global float *blocks,
-                     global const struct RenderParameters *parameters, global const float *filter_table) {
-    Block block = block_of(headers, blocks, get_global_id(0));
+INLINE uint run_generate(Block block, const SceneView *scene) {
     Queue rays = QUEUE(block, RAYS);
-    global const struct RenderParameters *p = parameters;
+    global const struct RenderParameters *p = scene->parameters;
     uint count = *rays.count, next = block.header->next_path, end = block.header->path_count;
     while (count + LANES <= BLOCK_SLOTS && next < end) {
         UInt id = LANE_INDEX + (UInt)next;
@@ -25,8 +28,8 @@ kernel void generate(global struct BlockHeader *headers, global float *blocks,
         if (bits == 0u) continue;
         Float u1, u2;
         sample_2d(path_sample_id(block, id, p->seed), (UInt)PAIR_FILM, &u1, &u2);
-        Float film_x = convert_Float(as_Int(px)) + 0.5f + sample_filter(filter_table, u1);
-        Float film_y = convert_Float(as_Int(py)) + 0.5f + sample_filter(filter_table, u2);
+        Float film_x = convert_Float(as_Int(px)) + 0.5f + sample_filter(scene->filter_table, u1);
+        Float film_y = convert_Float(as_Int(py)) + 0.5f + sample_filter(scene->filter_table, u2);
         Vec3 on_plane = vec3(madd(film_x, (Float)p->x_scale, (Float)p->x_offset),
                           madd(film_y, (Float)p->y_scale, (Float)p->y_offset), ONE);
         Float stretch = sqrt(length_squared(on_plane)); // distance along the ray a unit of depth
@@ -36,6 +39,7 @@ kernel void generate(global struct BlockHeader *headers, global float *blocks,
         append_vec3(rays, PATH_ORIGIN, count, scale_add(direction, stretch * p->near_clip, eye), bits);
         append_vec3(rays, PATH_DIRECTION, count, direction, bits);
         append_field(rays, PATH_T, count, stretch * (p->far_clip - p->near_clip), bits);
+        append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
         append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
         append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
         append_uint(rays, PATH_ID, count, id, bits);
@@ -45,7 +49,11 @@ kernel void generate(global struct BlockHeader *headers, global float *blocks,
 #endif
         count += popcount(bits);
     }
-    block.header->started = count - *rays.count;
+    uint started = count - *rays.count;
+    block.header->started = started;
     *rays.count = count;
     block.header->next_path = next;
+    return started;
 }
+
+#endif

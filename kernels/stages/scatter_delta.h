@@ -1,17 +1,18 @@
 // Delta lobes: the one direction they allow is followed. No light sample, no MIS.
-#include "bsdf/material.h"
-#include "stages/continue_path.h"
+#ifndef WAVELOBE_STAGES_SCATTER_DELTA_H
+#define WAVELOBE_STAGES_SCATTER_DELTA_H
 
-kernel void scatter_delta(global struct BlockHeader *headers, global float *blocks,
-                          SURFACE_PARAMETERS TEXTURE_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    SurfaceView view = SURFACE_VIEW;
+#include "stages/continue_path.h"
+#include "stages/scene_view.h"
+
+INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
+    global const struct RenderParameters *parameters = scene->parameters;
     Queue delta = QUEUE(block, DELTA), rays = QUEUE(block, RAYS);
     uint n = *delta.count, appended = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(delta, i);
-        Surface surface = load_surface(view, &path);
-        MaterialInput in = material_input(&surface, view.materials, TEXTURE_ARGUMENTS);
+        Surface surface = load_surface(scene->surfaces, &path);
+        MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SampleId sample = path_sample_id(block, path.id, parameters->seed);
         Float unused, u;
         sample_2d(sample, vertex_pair(path.depth, PAIR_CHOICE), &unused, &u);
@@ -25,4 +26,7 @@ kernel void scatter_delta(global struct BlockHeader *headers, global float *bloc
     }
     *rays.count = appended;
     *delta.count = 0u;
+    return n;
 }
+
+#endif

@@ -1,6 +1,9 @@
 // Paths that hit a light gain its radiance, weighted against the light sample of the vertex before.
-#include "lights/choose.h"
+#ifndef WAVELOBE_STAGES_SHADE_EMITTED_H
+#define WAVELOBE_STAGES_SHADE_EMITTED_H
+
 #include "sampling/mis.h"
+#include "stages/scene_view.h"
 
 // Hit lights: which light of all, from the shape and the triangle.
 INLINE UInt light_of_surface(SurfaceView view, const Surface *surface) {
@@ -11,16 +14,14 @@ INLINE UInt light_of_surface(SurfaceView view, const Surface *surface) {
     return first_light + SELECT(per_light == (UInt)2u, (UInt)0u, triangle);
 }
 
-kernel void shade_emitted(global struct BlockHeader *headers, global float *blocks,
-                          SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    SurfaceView view = SURFACE_VIEW;
+INLINE uint run_shade_emitted(Block block, const SceneView *scene) {
+    SurfaceView view = scene->surfaces;
     Queue emitted = QUEUE(block, EMITTED);
     uint n = *emitted.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(emitted, i);
         Surface surface = load_surface(view, &path);
-        LightInput in = LIGHT_VIEW;
+        LightInput in = scene->lights;
         in.light = SELECT(path.live, light_of_surface(view, &surface), (UInt)0u);
         Vec3 normal = surface.normal;
         Int facing = path.live & (dot3(normal, path.direction) < 0.0f);
@@ -46,4 +47,7 @@ kernel void shade_emitted(global struct BlockHeader *headers, global float *bloc
         add_radiance(block, path.id, gain, lane_bits(facing));
     }
     *emitted.count = 0u;
+    return n;
 }
+
+#endif

@@ -1,16 +1,17 @@
 // Paths that left the scene gain the environment's radiance, weighted against the light sample of the vertex before.
-#include "lights/choose.h"
-#include "sampling/mis.h"
+#ifndef WAVELOBE_STAGES_SHADE_ESCAPED_H
+#define WAVELOBE_STAGES_SHADE_ESCAPED_H
 
-kernel void shade_escaped(global struct BlockHeader *headers, global float *blocks,
-                          SURFACE_PARAMETERS TEXTURE_PARAMETERS LIGHT_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
+#include "sampling/mis.h"
+#include "stages/scene_view.h"
+
+INLINE uint run_shade_escaped(Block block, const SceneView *scene) {
     Queue escaped = QUEUE(block, ESCAPED);
     uint n = *escaped.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(escaped, i);
-        LightInput in = LIGHT_VIEW;
-        in.light = (UInt)environment->light;
+        LightInput in = scene->lights;
+        in.light = (UInt)in.environment->light;
         Rgb radiance = vec3_all(ZERO);
         Float pdf = ZERO;
         // A scene has one environment.
@@ -31,4 +32,7 @@ kernel void shade_escaped(global struct BlockHeader *headers, global float *bloc
         add_radiance(block, path.id, scale(mul(path.throughput, radiance), weight), lane_bits(path.live));
     }
     *escaped.count = 0u;
+    return n;
 }
+
+#endif

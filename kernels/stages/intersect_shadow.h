@@ -1,5 +1,8 @@
 // Traces the shadow queue; a light that is seen adds its contribution to the path's radiance.
-#include "shapes/geometry_parameters.h"
+#ifndef WAVELOBE_STAGES_INTERSECT_SHADOW_H
+#define WAVELOBE_STAGES_INTERSECT_SHADOW_H
+
+#include "stages/scene_view.h"
 
 #if HAS_FEW_TRIANGLES
 // LANES rays at a time against everything. A path has one shadow ray at the most, so no two lanes share an id.
@@ -7,9 +10,10 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i += LANES) {
         Int live = lanes_below(i, n);
-        Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), read_vec3(shadow, SHADOW_DIRECTION, i),
-                                 read_field(shadow, SHADOW_T, i), live);
         UInt id = SELECT(live, read_uint(shadow, SHADOW_ID, i), (UInt)0u);
+        Vec3 direction = read_vec3(shadow, SHADOW_DIRECTION, i);
+        Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), direction, read_field(shadow, SHADOW_T, i),
+                                 read_uint(shadow, SHADOW_FROM, i), live KEY_ARGUMENT(geometry, block, id, direction));
         add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), lane_bits(live & !blocked));
     }
 }
@@ -18,7 +22,7 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, i);
+        Ray r = slot_ray(geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
         if (trace_any(geometry, &r)) continue;
         uint id = slot_uint(shadow, SHADOW_ID, i);
         for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[id] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);
@@ -26,10 +30,12 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 }
 #endif
 
-kernel void intersect_shadow(global struct BlockHeader *headers, global float *blocks, GEOMETRY_PARAMETERS) {
-    Block block = block_of(headers, blocks, get_global_id(0));
-    Geometry geometry = GEOMETRY_VIEW;
+INLINE uint run_intersect_shadow(Block block, const SceneView *scene) {
     Queue shadow = QUEUE(block, SHADOW);
-    intersect_shadow_rays(geometry, block, shadow);
+    uint n = *shadow.count;
+    intersect_shadow_rays(scene->geometry, block, shadow);
     *shadow.count = 0u;
+    return n;
 }
+
+#endif

@@ -1,19 +1,28 @@
 // Adds the samples of finished blocks to the film: each pixel's in order of sample, in double, so that any division of the
 // work gives the same sums. Samples that are not finite are counted and left out.
+#ifndef WAVELOBE_STAGES_ACCUMULATE_H
+#define WAVELOBE_STAGES_ACCUMULATE_H
+
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#include "core/block.h"
-#include "shared/scene.h"
+#include "stages/scene_view.h"
+#if HAS_ERROR_ESTIMATE
+#include "stages/tile_error.h"
+#endif
 
 INLINE uint is_finite(float x) { return (as_uint(x) & 0x7f800000u) != 0x7f800000u; }
 
-kernel void accumulate(global struct BlockHeader *headers, global float *blocks,
-                       global const struct RenderParameters *parameters, global struct FilmPixel *film) {
-    Block block = block_of(headers, blocks, get_global_id(0));
+INLINE uint run_accumulate(Block block, const SceneView *scene) {
+    global const struct RenderParameters *parameters = scene->parameters;
     global struct BlockHeader *h = block.header;
     uint pending = h->count[QUEUE_RAYS] + h->count[QUEUE_SHADOW];
-    if (h->path_count == 0u || h->next_path < h->path_count || pending != 0u) return;
+    if (h->path_count == 0u || h->next_path < h->path_count || pending != 0u) return 0u;
     global float *red = radiance_channel(block, 0u), *green = radiance_channel(block, 1u);
     global float *blue = radiance_channel(block, 2u);
+    global struct FilmPixel *film = scene->film;
+#if HAS_ERROR_ESTIMATE
+    film += HALF_OF(h->first_sample) * (size_t)parameters->window_width * parameters->window_height;
+#endif
+    uint samples = 0u;
     for (uint pixel = 0u; pixel < TILE_PIXELS; pixel++) {
         uint x = h->tile_x + TILE_X(pixel) - parameters->window_x;
         uint y = h->tile_y + TILE_Y(pixel) - parameters->window_y;
@@ -36,6 +45,13 @@ kernel void accumulate(global struct BlockHeader *headers, global float *blocks,
         out->sum[0] = r, out->sum[1] = g, out->sum[2] = b;
         out->samples += finite;
         out->nonfinite += nonfinite;
+        samples += finite + nonfinite;
     }
+#if HAS_ERROR_ESTIMATE
+    estimate_tile_error(block, scene);
+#endif
     h->path_count = 0u; // free for the next tile
+    return samples;
 }
+
+#endif

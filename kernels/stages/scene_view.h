@@ -1,0 +1,39 @@
+// Everything a stage may read of the scene and write of the picture: each buffer that the scene has, as a kernel parameter
+// of its name, and all of them as one struct. What a stage does not read costs it nothing.
+#ifndef WAVELOBE_STAGES_SCENE_VIEW_H
+#define WAVELOBE_STAGES_SCENE_VIEW_H
+
+#include "bsdf/material.h"
+#include "shapes/geometry_parameters.h"
+#if HAS_LIGHTS
+#include "lights/choose.h"
+#endif
+
+typedef struct {
+    global const struct RenderParameters *parameters;
+    SurfaceView surfaces;
+    Geometry geometry;
+    global const struct Texture *textures;
+    global const float *texels;
+#if HAS_LIGHTS
+    LightInput lights;
+#endif
+    global const float *filter_table;
+    global struct FilmPixel *film;
+} SceneView;
+
+#if HAS_LIGHTS
+#define SCENE_LIGHT_PARAMETERS LIGHT_PARAMETERS
+#define SCENE_LIGHT_VIEW LIGHT_VIEW,
+#else
+#define SCENE_LIGHT_PARAMETERS
+#define SCENE_LIGHT_VIEW
+#endif
+
+#define SCENE_PARAMETERS                                                                          \
+    SURFACE_PARAMETERS TEXTURE_PARAMETERS SCENE_LIGHT_PARAMETERS, GEOMETRY_PARAMETERS,            \
+        global const float *filter_table, global struct FilmPixel *film
+#define SCENE_VIEW \
+    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW filter_table, film}
+
+#endif
