@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include <pugixml.hpp>
 
 #include "scene/file.h"
 #include "scene/mitsuba/elements.h"
+#include "scene/mitsuba/references.h"
 #include "scene/mitsuba/substitution.h"
 #include "scene/mitsuba/upgrade.h"
 #include "scene/mitsuba/values.h"
@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t max_include_depth = 15;
-// Of objects in objects, by nesting and by reference: far beyond any scene, and no strain on the stack.
-constexpr std::size_t max_object_depth = 64;
 
 // One file while it is being read.
 struct SourceFile {
@@ -52,7 +50,7 @@ public:
     void read(const std::string& path) {
         document_.search_folders.push_back(fs::path(path).parent_path().string());
         read_file_into(path, nullptr, Place{});
-        resolve_references();
+        resolve_references(document_, ids_, faults_);
         for (const std::string& name : substitution_.unused())
             faults_.add(Place{&document_.files.front(), 0, 0}, "-D " + name,
                         "the scene does not use this definition",
@@ -199,14 +197,9 @@ private:
                         "give every object an id of its own");
         parent.children.push_back({element.text("name"), &object, "", object.place});
         if (++object_depth_ <= max_object_depth) read_children(node, file, object);
-        else refuse_depth(object.place, object.label());
+        else refuse_depth(object.place, object.label(), faults_);
         --object_depth_;
         if (legacy_) upgrade_object(object, document_.warnings);
-    }
-
-    void refuse_depth(const Place& place, const std::string& label) {
-        faults_.add(place, label, "objects are nested more than " + std::to_string(max_object_depth) + " deep",
-                    "flatten the scene");
     }
 
     void read_property(const pugi::xml_node& node, const Element& element, const SourceFile& file, Object& parent) {
@@ -294,43 +287,6 @@ private:
         // The name belongs to the one object of a file that is no scene.
         if (element.attribute("name") != nullptr && parent.children.size() == first + 1)
             parent.children[first].name = element.text("name");
-    }
-
-    void resolve_references() {
-        std::vector<std::string> names;
-        for (const auto& [id, object] : ids_) names.push_back(id);
-        for (Object& object : document_.objects)
-            for (Child& child : object.children) {
-                if (child.reference.empty()) continue;
-                const auto target = ids_.find(child.reference);
-                if (target != ids_.end()) child.object = target->second;
-                else
-                    faults_.add(child.place, "<ref>", "no object has the id `" + child.reference + "`",
-                                suggestion(child.reference, names));
-            }
-        std::set<const Object*> visited;
-        std::vector<const Object*> path;
-        if (document_.root != nullptr) refuse_cycles(*document_.root, visited, path);
-    }
-
-    void refuse_cycles(Object& object, std::set<const Object*>& visited, std::vector<const Object*>& path) {
-        path.push_back(&object);
-        for (Child& child : object.children) {
-            if (child.object != nullptr && path.size() > max_object_depth) {
-                refuse_depth(child.place, object.label());
-                child.object = nullptr;
-            }
-            if (child.object == nullptr || visited.count(child.object) != 0) continue;
-            if (std::find(path.begin(), path.end(), child.object) != path.end()) {
-                faults_.add(child.place, "<ref>",
-                            "`" + child.reference + "` refers back to the object that holds it", "break the loop");
-                child.object = nullptr;
-            } else {
-                refuse_cycles(*child.object, visited, path);
-            }
-        }
-        path.pop_back();
-        visited.insert(&object);
     }
 
     Document& document_;
