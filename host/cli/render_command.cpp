@@ -108,7 +108,10 @@ int run(const RenderOptions& options) {
     catch_interrupts();
     const Scene scene = read_scene(options);
     const double parse_seconds = watch.lap();
-    if (!options.quiet) print_warnings(scene);
+    if (!options.quiet) {
+        print_warnings(scene);
+        print_notes(scene);
+    }
     if (interrupted()) return nothing_rendered();
 
     const Device device(DeviceOptions{options.threads, options.device});

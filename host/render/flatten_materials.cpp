@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "scene/fault.h"
 #include "tables/dielectric_surface.h"
 #include "tables/light_power.h"
 
@@ -27,9 +28,21 @@ float specular_share(const Model& m) {
 
 }  // namespace
 
-std::uint32_t MaterialFlattener::texture(const std::shared_ptr<const Texture>& texture) {
+std::uint32_t MaterialFlattener::first_texel(const Texture& texture) {
+    const auto [found, added] = texels_.try_emplace(&texture, static_cast<std::uint32_t>(out_.texels.size()));
+    if (!added) return found->second;
+    const Bitmap& bitmap = std::get<Bitmap>(texture.source);
+    // Kernels gather by signed 32-bit offsets.
+    if (out_.texels.size() + bitmap.rgb.size() > 0x7fffffffU)
+        throw InputError(Fault{"", 0, 0, texture.name, "the scene's textures have more texels than 32-bit offsets reach", "use smaller images"});
+    out_.texels.insert(out_.texels.end(), bitmap.rgb.begin(), bitmap.rgb.end());
+    return found->second;
+}
+
+std::uint32_t MaterialFlattener::texture(const std::shared_ptr<const Texture>& texture, int channel) {
     if (!texture) return WAVELOBE_NONE;
-    const auto [found, added] = textures_.try_emplace(texture.get(), static_cast<std::uint32_t>(out_.textures.size()));
+    const auto [found, added] =
+        textures_.try_emplace(std::pair(texture.get(), channel), static_cast<std::uint32_t>(out_.textures.size()));
     if (!added) return found->second;
     DeviceTexture t{};
     for (int row = 0; row < 2; ++row) {
@@ -45,19 +58,24 @@ std::uint32_t MaterialFlattener::texture(const std::shared_ptr<const Texture>& t
         if (bitmap.filter == Filter::nearest) t.kind |= TEXTURE_NEAREST;
         if (bitmap.wrap == Wrap::mirror) t.kind |= TEXTURE_WRAP_MIRROR;
         if (bitmap.wrap == Wrap::clamp) t.kind |= TEXTURE_WRAP_CLAMP;
-        t.first_texel = static_cast<std::uint32_t>(out_.texels.size());
+        if (bitmap.row_wrap.value_or(bitmap.wrap) != bitmap.wrap) {
+            t.kind |= TEXTURE_OTHER_ROWS;
+            if (*bitmap.row_wrap == Wrap::mirror) t.kind |= TEXTURE_WRAP_MIRROR << TEXTURE_ROW_SHIFT;
+            if (*bitmap.row_wrap == Wrap::clamp) t.kind |= TEXTURE_WRAP_CLAMP << TEXTURE_ROW_SHIFT;
+        }
+        // A scalar of another channel starts there.
+        t.first_texel = first_texel(*texture) + static_cast<std::uint32_t>(channel);
         t.width = static_cast<std::uint32_t>(bitmap.width);
         t.height = static_cast<std::uint32_t>(bitmap.height);
-        out_.texels.insert(out_.texels.end(), bitmap.rgb.begin(), bitmap.rgb.end());
     }
     out_.textures.push_back(t);
     return found->second;
 }
 
-TexturedRgb MaterialFlattener::rgb(const Parameter& parameter) { return {packed(parameter.value), texture(parameter.texture)}; }
+TexturedRgb MaterialFlattener::rgb(const Parameter& parameter) { return {packed(parameter.value), texture(parameter.texture, 0)}; }
 
 TexturedFloat MaterialFlattener::scalar(const Parameter& parameter) {
-    return {parameter.value.x, texture(parameter.texture)};
+    return {parameter.value.x, texture(parameter.texture, parameter.channel)};
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const Diffuse& m) {
@@ -147,6 +165,20 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
     out.exponent = scalar(m.exponent);
 }
 
+void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
+    out.lobes = bit(LOBE_METALLIC_ROUGHNESS);
+    // A metal throughout has no base.
+    if (m.metallic.texture || m.metallic.value.x < 1.0F) out.lobes |= bit(LOBE_METALLIC_ROUGHNESS_BASE);
+    out_.features.ggx = true;
+    out.diffuse = rgb(m.base_color);
+    out.metallic = scalar(m.metallic);
+    out.alpha_u = scalar(m.roughness);
+    const double amplitude = m.ior == 0.0F ? 1.0 : (1.0 - static_cast<double>(m.ior)) / (1.0 + static_cast<double>(m.ior));
+    const Rgb reflectance = glm::min(static_cast<float>(amplitude * amplitude) * m.specular_color, Rgb(1.0F));
+    out.specular.value = packed(reflectance * m.specular);
+    out.specular_weight = m.specular;
+}
+
 template <class Extension>
 std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
     const std::size_t first = out_.materials.size();
@@ -160,7 +192,7 @@ std::uint32_t MaterialFlattener::add(int material) {
     if (const auto known = materials_.find(material); known != materials_.end()) return known->second;
     DeviceMaterial m{};
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
-    for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent}) parameter->texture = WAVELOBE_NONE;
+    for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent, &m.metallic}) parameter->texture = WAVELOBE_NONE;
     std::visit([this, &m](const auto& model) { fill(m, model); },
                scene_.materials[static_cast<std::size_t>(material)].model);
 

@@ -22,7 +22,8 @@ public:
 
 private:
     TexturedFloat scalar(const Parameter& parameter);
-    std::uint32_t texture(const std::shared_ptr<const Texture>& texture);
+    std::uint32_t texture(const std::shared_ptr<const Texture>& texture, int channel);
+    std::uint32_t first_texel(const Texture& texture);
     void fill(DeviceMaterial& out, const Diffuse& m);
     void fill(DeviceMaterial& out, const Conductor& m);
     void fill(DeviceMaterial& out, const RoughConductor& m);
@@ -32,6 +33,7 @@ private:
     void fill(DeviceMaterial& out, const Plastic& m);
     void fill(DeviceMaterial& out, const RoughPlastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
+    void fill(DeviceMaterial& out, const MetallicRoughness& m);
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);
@@ -44,7 +46,8 @@ private:
     const Scene& scene_;
     DeviceScene& out_;
     std::map<int, std::uint32_t> materials_;
-    std::map<const Texture*, std::uint32_t> textures_;
+    std::map<std::pair<const Texture*, int>, std::uint32_t> textures_;
+    std::map<const Texture*, std::uint32_t> texels_;
 };
 
 }  // namespace wavelobe

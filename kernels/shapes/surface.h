@@ -24,6 +24,9 @@ typedef struct {
 #if HAS_UVS
     global const float *uvs; // 6 a triangle
 #endif
+#if HAS_VERTEX_COLORS
+    global const float *colors; // 9 a triangle
+#endif
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     uint triangle_count;
@@ -44,6 +47,13 @@ typedef struct {
 #define UVS_PARAMETER
 #define UVS_ARGUMENT
 #endif
+#if HAS_VERTEX_COLORS
+#define COLORS_PARAMETER , global const float *colors
+#define COLORS_ARGUMENT , colors
+#else
+#define COLORS_PARAMETER
+#define COLORS_ARGUMENT
+#endif
 #if HAS_ANALYTIC
 #define ANALYTIC_PARAMETER , global const struct Analytic *analytics
 #define ANALYTIC_ARGUMENT , analytics, parameters->triangle_count
@@ -55,9 +65,9 @@ typedef struct {
 #define SURFACE_PARAMETERS                                                                                  \
     global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
-        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER ANALYTIC_PARAMETER
+        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER
 #define SURFACE_VIEW \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT ANALYTIC_ARGUMENT}
+    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT ANALYTIC_ARGUMENT}
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -72,6 +82,9 @@ typedef struct {
 #if HAS_TRANSMISSION
     Float eta;
 #endif
+#if HAS_LIGHT_TREE
+    UInt receiver;
+#endif
     Int live; // lanes that hold a path
 } TracedPath;
 
@@ -82,6 +95,9 @@ typedef struct {
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
     Float u, v;    // texture coordinates
+#if HAS_VERTEX_COLORS
+    Rgb color;
+#endif
     UInt shape;
     UInt primitive;
     UInt material; // WAVELOBE_NONE: black
@@ -105,6 +121,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #endif
 #if HAS_TRANSMISSION
     p.eta = read_field(q, PATH_ETA, i);
+#endif
+#if HAS_LIGHT_TREE
+    p.receiver = read_uint(q, PATH_RECEIVER, i);
 #endif
     return p;
 }
@@ -183,7 +202,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
     Vec3 n = out->normal;
-#if HAS_SMOOTH_NORMALS || HAS_UVS
+#if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
     UInt triangle = out->primitive - first_primitive;
 #endif
 #if HAS_SMOOTH_NORMALS
@@ -195,6 +214,17 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
                                    gather_vec3(s.normals + 6, at), wa, wb, wc);
         Float square = length_squared(shading);
         n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), n);
+    }
+#endif
+#if HAS_VERTEX_COLORS
+    UInt first_color = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_color);
+    Int colored = first_color != (UInt)WAVELOBE_NONE;
+    out->color = vec3_all(ONE);
+    if (any_lane(colored)) {
+        UInt at = SELECT(colored, first_color + triangle * 9u, (UInt)0u);
+        Rgb color = interpolate(gather_vec3(s.colors, at), gather_vec3(s.colors + 3, at), gather_vec3(s.colors + 6, at),
+                                wa, wb, wc);
+        out->color = select3(colored, color, out->color);
     }
 #endif
     out->u = wb;
@@ -219,6 +249,9 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->normal = select3(analytic, h.normal, out->normal);
     out->u = SELECT(analytic, h.u, out->u);
     out->v = SELECT(analytic, h.v, out->v);
+#if HAS_VERTEX_COLORS
+    out->color = select3(analytic, vec3_all(ONE), out->color);
+#endif
 #if HAS_ANISOTROPY
     Frame frame = frame_along(h.normal, h.tangent);
 #else

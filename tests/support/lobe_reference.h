@@ -1,6 +1,7 @@
 // Lobes in double precision on the host, by the textbook formulas, for comparison with the kernels.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -143,6 +144,43 @@ inline ReferenceValue reference_plastic_base(const ::Material& m, const glm::dve
             wo.z / pi};
 }
 
+// glTF 2.0, appendix B.3: mix(fresnel_mix(diffuse, specular), conductor_fresnel(specular), metallic), by its own formulas.
+struct GltfTerms {
+    double specular_brdf;  // D times the visibility
+    double fresnel;        // (1 - |V . H|)^5
+    double pdf;
+};
+
+inline GltfTerms gltf_terms(::Material m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const double alpha = std::max(static_cast<double>(m.alpha_u.value * m.alpha_u.value), 1e-4);
+    m.alpha_u.value = m.alpha_v.value = static_cast<float>(alpha);
+    m.flags = 0;
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = reference_density(m, h);
+    const double v = reference_masking(m, wi, true) * reference_masking(m, wo, true) / (4.0 * wi.z * wo.z);
+    return {d * v, std::pow(1.0 - std::abs(glm::dot(wi, h)), 5.0), d * reference_masking(m, wi, true) / (4.0 * wi.z)};
+}
+
+inline ReferenceValue reference_metallic_roughness(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const GltfTerms t = gltf_terms(m, wi, wo);
+    const glm::dvec3 f0 = to_double(m.specular.value);
+    const glm::dvec3 base = to_double(m.diffuse.value);
+    const double metallic = m.metallic.value;
+    const double f90 = m.specular_weight;
+    const glm::dvec3 dielectric = (f0 + (f90 - f0) * t.fresnel) * t.specular_brdf;
+    const glm::dvec3 metal = (base + (1.0 - base) * t.fresnel) * t.specular_brdf;
+    return {glm::mix(dielectric, metal, metallic) * wo.z, t.pdf};
+}
+
+inline ReferenceValue reference_metallic_roughness_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const double fresnel = gltf_terms(m, wi, wo).fresnel;
+    const double f0 = std::max({m.specular.value.x, m.specular.value.y, m.specular.value.z});
+    const double passed = (1.0 - (f0 + (static_cast<double>(m.specular_weight) - f0) * fresnel)) * (1.0 - static_cast<double>(m.metallic.value));
+    return {to_double(m.diffuse.value) * (passed * wo.z / pi), wo.z / pi};
+}
+
 inline double reference_rough_transmittance(const ::Material& m, double cosine) {
     const auto& table = extension_of<RoughTransmittance>(m).at;
     const double at = std::min(cosine, 1.0) * (ROUGH_TRANSMITTANCE_STEPS - 1);
@@ -169,6 +207,8 @@ inline const std::map<std::string, ReferenceEval>& reference_evals() {
     static const std::map<std::string, ReferenceEval> evals{
         {"rough_conductor", reference_rough_conductor}, {"rough_dielectric", reference_rough_dielectric},
         {"phong", reference_phong},                     {"lambert", reference_lambert},
+        {"plastic_base", reference_plastic_base},       {"metallic_roughness", reference_metallic_roughness},
+        {"metallic_roughness_base", reference_metallic_roughness_base},
         {"plastic_base", reference_plastic_base},       {"rough_plastic_coat", reference_rough_plastic_coat},
         {"rough_plastic_base", reference_rough_plastic_base},
     };

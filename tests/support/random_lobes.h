@@ -36,6 +36,7 @@ inline std::vector<Material> random_materials(Random& random, std::size_t n) {
         m.alpha_u.value = i % 3 == 0 ? pick(random, corner_alphas) : random.log_between(1e-4F, 1.0F);
         m.alpha_v.value = i % 3 == 1 ? pick(random, corner_alphas) : random.log_between(1e-4F, 1.0F);
         m.exponent.value = i % 4 == 0 ? pick(random, corner_exponents) : random.log_between(0.1F, 1e6F);
+        m.metallic.value = i % 7 == 0 ? 1.0F : random.uniform();
         m.diffuse_fresnel_internal = random.between(0.0F, 0.95F);
         m.specular_weight = random.uniform();
         materials.push_back(m);
@@ -57,6 +58,7 @@ inline Material random_material(Random& random, const std::vector<LobeParameters
     m.eta = {eta, random.between(0.05F, 4.0F), pick(random, corner_etas)};
     m.k = {random.between(0.0F, 10.0F), 0.0F, random.log_between(1e-3F, 10.0F)};
     m.exponent.value = random.uniform() < 0.3F ? pick(random, corner_exponents) : random.log_between(0.1F, 1e6F);
+    m.metallic.value = i % 7 == 0 ? 1.0F : random.uniform();
     return m;
 }
 
