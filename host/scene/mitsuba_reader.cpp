@@ -30,13 +30,16 @@ const std::vector<std::string> ignored_settings{"allow_thread_reordering",
 
 void read_top_level(Context& context, const Object& object) {
     if (object.tag == "bsdf") read_bsdf(context, object);
-    else if (object.tag == "texture" || object.tag == "spectrum") read_texture(context, object, TextureUse::colour);
+    else if (object.tag == "texture" || object.tag == "spectrum") {
+        if (!read_spectrum_object(context, object, ColourUse::unbounded)) read_texture(context, object, TextureUse::colour);
+    }
     else if (object.tag == "shape") read_shape(context, object);
     else if (object.tag == "emitter") read_emitter(context, object);
     else if (object.tag == "sensor") read_sensor(context, object);
     else if (object.tag == "integrator") read_integrator(context, object);
     else if (object.tag == "film") read_film(context, object);
-    else if (object.tag != "sampler" && object.tag != "rfilter")
+    else if (object.tag != "sampler" && object.tag != "rfilter" && object.tag != "medium" && object.tag != "phase" &&
+             object.tag != "volume")  // what refers to them decides
         context.faults.add(object.place, object.label(), "a " + object.tag + " is not supported",
                            "remove it from the scene");
 }
@@ -62,6 +65,7 @@ Scene read_mitsuba_scene(const std::string& path, const Definitions& definitions
     const std::unique_ptr<Document> document = read_document(path, definitions, faults);
     Scene scene;
     scene.name = std::filesystem::path(path).stem().string();
+    for (const Fault& warning : document->warnings) scene.warnings.push_back(warning.text());
     if (document->root != nullptr) {
         Context context(*document, scene, faults);
         read_scene_object(context, *document->root);
@@ -74,7 +78,8 @@ std::vector<SupportedPlugins> supported_plugins() {
     return {{"integrator", integrator_types()}, {"sensor", sensor_types()},
             {"sampler", sampler_types()},       {"film", film_types()},
             {"rfilter", filter_types()},        {"bsdf", bsdf_types()},
-            {"texture", texture_types()},       {"shape", shape_types()},
+            {"texture", texture_types()},   {"spectrum", spectrum_types()},
+                  {"shape", shape_types()},
             {"emitter", emitter_types()}};
 }
 

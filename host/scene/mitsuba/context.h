@@ -41,6 +41,16 @@ struct Context {
     int integrators = 0;
 };
 
+// How a colour parameter is used: reflectances lie in [0, 1], emission has its own uniform spectrum.
+enum class ColourUse { reflectance, unbounded, emission };
+
+// ---- spectra.cpp ------------------------------------------------------------------------------------
+
+// The colour of a nested spectrum such as `blackbody`; nothing for other objects. One that cannot be read is black, the
+// fault being on record.
+std::optional<Rgb> read_spectrum_object(Context& context, const Object& object, ColourUse use);
+std::vector<std::string> spectrum_types();
+
 // ---- textures.cpp -----------------------------------------------------------------------------------
 
 enum class TextureUse { colour, scalar };

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include <pugixml.hpp>
 
 #include "scene/file.h"
 #include "scene/mitsuba/elements.h"
+#include "scene/mitsuba/references.h"
 #include "scene/mitsuba/substitution.h"
+#include "scene/mitsuba/upgrade.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -49,7 +50,7 @@ public:
     void read(const std::string& path) {
         document_.search_folders.push_back(fs::path(path).parent_path().string());
         read_file_into(path, nullptr, Place{});
-        resolve_references();
+        resolve_references(document_, ids_, faults_);
         for (const std::string& name : substitution_.unused())
             faults_.add(Place{&document_.files.front(), 0, 0}, "-D " + name,
                         "the scene does not use this definition",
@@ -77,7 +78,10 @@ private:
             return faults_.add(file.place(result.offset), "",
                                std::string("not well-formed XML: ") + result.description(), "correct the XML");
         open_files_.push_back(canonical);
+        const bool outer_legacy = legacy_;
+        legacy_ = false;
         read_root(xml.document_element(), file, parent);
+        legacy_ = outer_legacy;
         open_files_.pop_back();
     }
 
@@ -124,12 +128,7 @@ private:
                         "cannot read the version `" + *version + "`; expected three numbers such as 3.0.0", "");
             return false;
         }
-        if (parts[0] < 2) {
-            faults_.add(element.place, label,
-                        "files of version " + *version + " are not supported yet; expected 2.x.y or 3.x.y",
-                        "convert the scene to the format of Mitsuba 3");
-            return false;
-        }
+        legacy_ = parts[0] < 2;
         return true;
     }
 
@@ -143,6 +142,7 @@ private:
         };
         for (const pugi::xml_attribute& attribute : node.attributes())
             element.attributes.emplace_back(attribute.name(), substitution_.apply(attribute.value(), undefined));
+        if (legacy_) upgrade_element(element);
         return element;
     }
 
@@ -196,7 +196,10 @@ private:
                             std::to_string(ids_[object.id]->place.line) + " of " + *ids_[object.id]->place.file,
                         "give every object an id of its own");
         parent.children.push_back({element.text("name"), &object, "", object.place});
-        read_children(node, file, object);
+        if (++object_depth_ <= max_object_depth) read_children(node, file, object);
+        else refuse_depth(object.place, object.label(), faults_);
+        --object_depth_;
+        if (legacy_) upgrade_object(object, document_.warnings);
     }
 
     void read_property(const pugi::xml_node& node, const Element& element, const SourceFile& file, Object& parent) {
@@ -212,7 +215,25 @@ private:
         if (std::any_of(parent.properties.begin(), parent.properties.end(), same))
             return faults_.add(element.place, element.label(),
                                "the property is given more than once in " + parent.label(), "keep one of them");
-        parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
+        if (element.tag == "spectrum" && element.attribute("filename") != nullptr)
+            parent.properties.push_back({name, read_spectrum_file(element), element.place});
+        else parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
+    }
+
+    Value read_spectrum_file(const Element& element) {
+        if (!check_attributes(element, {"name", "filename"}, {}, faults_) || element.broken) return Unreadable{};
+        const std::string path = document_.find_file(element.text("filename"), element.place);
+        if (path.empty()) {
+            faults_.add(element.place, element.label(), "the file `" + element.text("filename") + "` does not exist",
+                        "check the name, or add its folder with <path>");
+            return Unreadable{};
+        }
+        try {
+            return load_spd(path);
+        } catch (const InputError& error) {
+            faults_.add(error, element.place, element.label());
+            return Unreadable{};
+        }
     }
 
     void read_reference(const Element& element, Object& parent) {
@@ -268,44 +289,13 @@ private:
             parent.children[first].name = element.text("name");
     }
 
-    void resolve_references() {
-        std::vector<std::string> names;
-        for (const auto& [id, object] : ids_) names.push_back(id);
-        for (Object& object : document_.objects)
-            for (Child& child : object.children) {
-                if (child.reference.empty()) continue;
-                const auto target = ids_.find(child.reference);
-                if (target != ids_.end()) child.object = target->second;
-                else
-                    faults_.add(child.place, "<ref>", "no object has the id `" + child.reference + "`",
-                                suggestion(child.reference, names));
-            }
-        std::set<const Object*> visited;
-        std::vector<const Object*> path;
-        if (document_.root != nullptr) refuse_cycles(*document_.root, visited, path);
-    }
-
-    void refuse_cycles(Object& object, std::set<const Object*>& visited, std::vector<const Object*>& path) {
-        path.push_back(&object);
-        for (Child& child : object.children) {
-            if (child.object == nullptr || visited.count(child.object) != 0) continue;
-            if (std::find(path.begin(), path.end(), child.object) != path.end()) {
-                faults_.add(child.place, "<ref>",
-                            "`" + child.reference + "` refers back to the object that holds it", "break the loop");
-                child.object = nullptr;
-            } else {
-                refuse_cycles(*child.object, visited, path);
-            }
-        }
-        path.pop_back();
-        visited.insert(&object);
-    }
-
     Document& document_;
     Faults& faults_;
     Substitution substitution_;
     std::map<std::string, Object*> ids_;
     std::vector<std::string> open_files_;
+    std::size_t object_depth_ = 0;
+    bool legacy_ = false;  // the file that is being read is of Mitsuba 0.x
 };
 
 }  // namespace

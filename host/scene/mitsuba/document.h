@@ -14,6 +14,7 @@
 
 #include "scene/mitsuba/faults.h"
 #include "scene/mitsuba_reader.h"
+#include "scene/spectrum.h"
 
 namespace wavelobe::mitsuba {
 
@@ -29,7 +30,7 @@ struct UniformSpectrum {
 struct Unreadable {};
 
 using Value = std::variant<Unreadable, double, std::int64_t, bool, std::string, glm::dvec3, Colour, UniformSpectrum,
-                           glm::dmat4>;
+                           SampledSpectrum, glm::dmat4>;
 
 struct Property {
     std::string name;
@@ -54,6 +55,7 @@ struct Object {
     std::vector<Property> properties;
     std::vector<Child> children;
     bool broken = false;  // its type could not be read; the fault is on record
+    bool legacy = false;  // of a file of Mitsuba 0.x: what is unknown there is passed over
 
     std::string label() const;  // `shape[obj] "id"`
 };
@@ -62,6 +64,7 @@ struct Document {
     std::deque<std::string> files;  // names, the scene itself first
     std::deque<Object> objects;
     Object* root = nullptr;
+    std::vector<Fault> warnings;
     std::vector<std::string> search_folders;  // where relative file names are looked up, in order
 
     // The first existing file of that relative or absolute name; empty when there is none.

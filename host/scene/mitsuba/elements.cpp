@@ -14,10 +14,11 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const Names property_tags{"float",  "integer", "boolean",  "string",   "point",
-                          "vector", "rgb",     "spectrum", "transform"};
+// `blackbody` and `subsurface` are of Mitsuba 0.x.
+const Names property_tags{"float", "integer", "boolean",  "string",    "point",
+                          "vector", "rgb",    "spectrum", "transform", "blackbody"};
 const Names object_tags{"scene",   "bsdf",    "shape",   "emitter", "sensor", "integrator", "film",
-                        "sampler", "rfilter", "texture", "medium",  "phase",  "volume"};
+                        "sampler", "rfilter", "texture", "medium",  "phase",  "volume",     "subsurface"};
 const Names operation_tags{"translate", "rotate", "scale", "lookat", "matrix"};
 const Names other_tags{"default", "ref", "include", "alias", "path"};
 
@@ -159,17 +160,40 @@ Value parse_transform(const std::vector<Element>& operations, Faults& faults) {
     return matrix;
 }
 
+// One number, or pairs of wavelength and value.
 Value parse_spectrum(const Element& element, Faults& faults) {
-    if (!check_attributes(element, {"name"}, {"value", "filename"}, faults)) return Unreadable{};
-    constexpr const char* hint = "give the colour as <rgb>, or one number for a uniform spectrum";
-    if (element.attribute("filename") != nullptr)
-        return refuse(element, faults, "spectra from files are not supported", hint);
+    if (!check_attributes(element, {"name", "value"}, {}, faults)) return Unreadable{};
     const std::string text = element.text("value");
-    if (text.find(':') != std::string::npos)
-        return refuse(element, faults, "spectra of wavelength:value pairs are not supported", hint);
-    const auto number = parse_real(text);
-    if (!number) return refuse_value(element, faults, "one finite number");
-    return UniformSpectrum{*number};
+    if (text.find(':') == std::string::npos) {
+        const auto number = parse_real(text);
+        if (!number) return refuse_value(element, faults, "one finite number, or pairs wavelength:value");
+        return UniformSpectrum{*number};
+    }
+    SampledSpectrum spectrum;
+    for (const std::string& token : split(text)) {
+        const std::size_t colon = token.find(':');
+        const auto wavelength = parse_real(token.substr(0, colon));
+        const auto value = colon == std::string::npos ? std::nullopt : parse_real(token.substr(colon + 1));
+        if (!wavelength || !value)
+            return refuse(element, faults, "cannot read `" + token + "`; expected a pair wavelength:value", "");
+        spectrum.wavelengths.push_back(*wavelength);
+        spectrum.values.push_back(*value);
+    }
+    if (const std::string fault = fault_of(spectrum); !fault.empty()) return refuse(element, faults, fault, "");
+    return spectrum;
+}
+
+Value parse_blackbody(const Element& element, Faults& faults) {
+    if (!check_attributes(element, {"name", "temperature"}, {"scale"}, faults)) return Unreadable{};
+    std::string text = element.text("temperature");
+    if (text.ends_with('K') || text.ends_with('k')) text.pop_back();
+    const auto kelvin = parse_real(text);
+    const auto scale = element.attribute("scale") == nullptr ? 1.0 : parse_real(element.text("scale"));
+    if (!kelvin || *kelvin <= 0.0 || !scale)
+        return refuse(element, faults, "cannot read the temperature; expected a positive number of kelvin", "");
+    SampledSpectrum spectrum = blackbody(*kelvin);
+    for (double& value : spectrum.values) value *= *scale;
+    return spectrum;
 }
 
 Value parse_simple(const Element& element, Faults& faults) {
@@ -250,6 +274,7 @@ Value parse_property(const Element& element, const std::vector<Element>& operati
         return fine ? matrix : Unreadable{};
     }
     if (element.tag == "spectrum") return parse_spectrum(element, faults);
+    if (element.tag == "blackbody") return parse_blackbody(element, faults);
     if (element.tag == "point" || element.tag == "vector") {
         const bool whole = element.attribute("value") != nullptr;
         const Names components = whole ? Names{"name", "value"} : Names{"name", "x", "y", "z"};

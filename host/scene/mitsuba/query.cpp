@@ -2,7 +2,6 @@
 #include "scene/mitsuba/query.h"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
@@ -12,9 +11,6 @@
 namespace wavelobe::mitsuba {
 
 namespace {
-
-// A flat spectrum is not white in sRGB, whose white point is D65: this is its colour for unit values.
-constexpr std::array<double, 3> uniform_spectrum_rgb{1.20479393, 0.948291004, 0.908916056};
 
 std::string number_text(double number) { return fmt::format("{:.6g}", number); }
 
@@ -84,6 +80,9 @@ std::int64_t Query::integer(const std::string& name, std::int64_t otherwise, std
     if (property == nullptr) return otherwise;
     const auto* number = std::get_if<std::int64_t>(&property->value);
     if (number == nullptr) {
+        const auto* real = std::get_if<double>(&property->value);
+        if (real != nullptr && object_.legacy && *real >= static_cast<double>(low) && *real <= static_cast<double>(high))
+            return static_cast<std::int64_t>(*real);
         wrong_type(*property, "<integer>");
         return otherwise;
     }
@@ -156,17 +155,19 @@ std::optional<Rgb> Query::colour_value(const Property& property, ColourUse use) 
         rgb = glm::dvec3(static_cast<double>(*whole));
     else if (const auto* colour = std::get_if<Colour>(&property.value)) rgb = colour->rgb;
     else if (const auto* spectrum = std::get_if<UniformSpectrum>(&property.value))
-        rgb = use != ColourUse::emission
-                  ? glm::dvec3(spectrum->value)
-                  : spectrum->value *
-                        glm::dvec3(uniform_spectrum_rgb[0], uniform_spectrum_rgb[1], uniform_spectrum_rgb[2]);
+        rgb = spectrum->value * (use != ColourUse::emission ? glm::dvec3(1.0) : equal_energy_rgb());
+    else if (const auto* sampled = std::get_if<SampledSpectrum>(&property.value)) rgb = sampled_colour(*sampled, use);
     else {
-        wrong_type(property, "<float>, <rgb> or <spectrum> with one value");
+        wrong_type(property, "<float>, <rgb> or <spectrum>");
         return std::nullopt;
     }
     const bool negative = rgb.r < 0.0 || rgb.g < 0.0 || rgb.b < 0.0;
     const bool above_one = rgb.r > 1.0 || rgb.g > 1.0 || rgb.b > 1.0;
     const bool bounded = use == ColourUse::reflectance && std::holds_alternative<Colour>(property.value);
+    if (bounded && above_one && !negative && object_.legacy) {
+        warn(fmt::format("`{}` is above 1 and taken as 1", property.name));
+        return Rgb(glm::min(rgb, glm::dvec3(1.0)));
+    }
     if (negative || (bounded && above_one)) {
         context_.faults.add(
             property.place, object_.label(),
@@ -176,6 +177,13 @@ std::optional<Rgb> Query::colour_value(const Property& property, ColourUse use) 
         return std::nullopt;
     }
     return Rgb(rgb);
+}
+
+// Colours out of gamut are clamped to what the parameter allows.
+glm::dvec3 Query::sampled_colour(const SampledSpectrum& spectrum, ColourUse use) {
+    const Illuminant illuminant = use == ColourUse::emission ? Illuminant::none : Illuminant::d65;
+    const glm::dvec3 rgb = glm::max(spectrum_to_rgb(spectrum, illuminant), glm::dvec3(0.0));
+    return use == ColourUse::reflectance ? glm::min(rgb, glm::dvec3(1.0)) : rgb;
 }
 
 Rgb Query::colour(const std::string& name, double otherwise, ColourUse use) {
@@ -190,7 +198,8 @@ Parameter Query::parameter(const std::string& name, double otherwise, ColourUse 
     if (const Property* property = find(name)) {
         result.value = colour_value(*property, use).value_or(result.value);
     } else if (const Child* child = find_child(name); child != nullptr && child->object != nullptr) {
-        result.texture = read_texture(context_, *child->object, TextureUse::colour);
+        if (const auto rgb = read_spectrum_object(context_, *child->object, use)) result.value = *rgb;
+        else result.texture = read_texture(context_, *child->object, TextureUse::colour);
     }
     return result;
 }
@@ -204,7 +213,9 @@ Parameter Query::scalar_parameter(const std::string& name, double otherwise, Ran
                 (static_cast<double>(rgb->r) + static_cast<double>(rgb->g) + static_cast<double>(rgb->b)) / 3.0;
         result.value = Rgb(static_cast<float>(in_range(*property, number, otherwise, range)));
     } else if (const Child* child = find_child(name); child != nullptr && child->object != nullptr) {
-        result.texture = read_texture(context_, *child->object, TextureUse::scalar);
+        if (const auto rgb = read_spectrum_object(context_, *child->object, ColourUse::unbounded))
+            result.value = Rgb((rgb->r + rgb->g + rgb->b) / 3.0F);
+        else result.texture = read_texture(context_, *child->object, TextureUse::scalar);
     }
     return result;
 }
@@ -215,6 +226,8 @@ double Query::refractive_index(const std::string& name, const std::string& other
     if (property == nullptr) return fallback;
     if (const auto* number = std::get_if<double>(&property->value))
         return in_range(*property, *number, fallback, positive);
+    if (const auto* whole = std::get_if<std::int64_t>(&property->value))
+        return in_range(*property, static_cast<double>(*whole), fallback, positive);
     const auto* text = std::get_if<std::string>(&property->value);
     if (text == nullptr) {
         wrong_type(*property, "<float>, or <string> with the name of a dielectric");
@@ -289,11 +302,14 @@ void Query::finish() {
     asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
     const std::string expected =
         asked_.empty() ? "; it takes no properties" : "; expected only " + quoted_list(asked_);
-    for (const Property& property : object_.properties)
-        if (!std::binary_search(asked_.begin(), asked_.end(), property.name))
-            context_.faults.add(property.place, object_.label(),
-                                "unknown property `" + property.name + "`" + expected,
+    for (const Property& property : object_.properties) {
+        if (std::binary_search(asked_.begin(), asked_.end(), property.name)) continue;
+        const std::string message = "unknown property `" + property.name + "`";
+        if (object_.legacy) warn(message + " is ignored");
+        else
+            context_.faults.add(property.place, object_.label(), message + expected,
                                 suggestion(property.name, asked_));
+    }
     for (const Child& child : object_.children) {
         if (child.object == nullptr || std::find(taken_.begin(), taken_.end(), &child) != taken_.end()) continue;
         const std::string name = child.name.empty() ? "" : " named `" + child.name + "`";

@@ -11,9 +11,6 @@
 
 namespace wavelobe::mitsuba {
 
-// How a colour parameter is used: reflectances lie in [0, 1], emission has its own uniform spectrum.
-enum class ColourUse { reflectance, unbounded, emission };
-
 struct Range {
     double low = -1e30;
     double high = 1e30;
@@ -40,6 +37,8 @@ public:
 
     Rgb colour(const std::string& name, double otherwise, ColourUse use);
     Parameter parameter(const std::string& name, double otherwise, ColourUse use);
+    // Of a spectrum by its wavelengths, clamped to what the use allows.
+    glm::dvec3 sampled_colour(const SampledSpectrum& spectrum, ColourUse use);
     // One number or the scalar reading of a texture.
     Parameter scalar_parameter(const std::string& name, double otherwise, Range range);
     // A number or the name of a dielectric.

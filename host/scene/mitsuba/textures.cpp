@@ -87,6 +87,9 @@ Result read_texture(Context& context, const Object& object, TextureUse use) {
                            "nest a <texture> or give the value as <rgb>");
         return nullptr;
     }
+    if (object.type == "d65")
+        for (const Child& child : object.children)
+            if (child.object != nullptr) return entry->second = read_texture(context, *child.object, use);
     const auto* plugin = find_plugin(context, object, plugins);
     if (plugin == nullptr) return nullptr;
     Query query(context, object);
