@@ -82,6 +82,9 @@ typedef struct {
 #if HAS_TRANSMISSION
     Float eta;
 #endif
+#if HAS_LIGHT_TREE
+    UInt receiver;
+#endif
     Int live; // lanes that hold a path
 } TracedPath;
 
@@ -118,6 +121,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #endif
 #if HAS_TRANSMISSION
     p.eta = read_field(q, PATH_ETA, i);
+#endif
+#if HAS_LIGHT_TREE
+    p.receiver = read_uint(q, PATH_RECEIVER, i);
 #endif
     return p;
 }

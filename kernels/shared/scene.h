@@ -37,10 +37,11 @@ struct RenderParameters {
     Uint32 max_depth; // vertices a path may have; at least 1
     Uint32 rr_depth;  // Russian roulette from this many vertices on
     Uint32 light_count;
+    Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
     Uint32 few_triangle_count, few_vertex_count; // of scenes without a hierarchy
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 116);
+WAVELOBE_CHECK_SIZE(RenderParameters, 120);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

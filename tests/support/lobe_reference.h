@@ -245,8 +245,8 @@ inline std::vector<DeltaBranch> reference_dielectric(const ::Material& m, const 
 
 inline std::vector<DeltaBranch> reference_thin_dielectric(const ::Material& m, const glm::dvec3& wi) {
     const double r = reference_fresnel_dielectric(std::abs(wi.z), m.eta.x);
-    double pane = r;  // r + t r t + t r^3 t + ..., summed
-    for (double bounce = (1.0 - r) * (1.0 - r) * r; bounce > 1e-18 && r < 1.0; bounce *= r * r) pane += bounce;
+    // r + t r t (1 + r^2 + r^4 + ...) with t = 1 - r
+    const double pane = r + (1.0 - r) * r / (1.0 + r);
     return {{pane, mirrored(wi), to_double(m.specular.value), 1.0},
             {1.0 - pane, -wi, to_double(m.transmission.value), 1.0}};
 }
