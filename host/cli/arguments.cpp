@@ -59,6 +59,10 @@ void SceneArguments::add_to(CLI::App& command) {
         ->type_name("WIDTHxHEIGHT")
         ->take_last()
         ->check(CLI::Validator(is_resolution, ""));
+    command.add_option("--frame-time", frame_time, "Time in the animation of a glTF scene (default: as its nodes stand without)")
+        ->type_name("SECONDS")
+        ->take_last()
+        ->check(CLI::Range(-1e9, 1e9));
 }
 
 Scene SceneArguments::read() const {
@@ -67,8 +71,11 @@ Scene SceneArguments::read() const {
             throw InputError(Fault{"-D", 0, 0, "", "a glTF scene has no <default>s to define", "leave it out"});
         GltfOptions options;
         if (const auto size = parse_resolution(resolution)) std::tie(options.width, options.height) = *size;
+        options.frame_time = frame_time;
         return read_gltf_scene(path, options);
     }
+    if (frame_time)
+        throw InputError(Fault{"--frame-time", 0, 0, "", "is for glTF scenes", "leave it out"});
     if (!resolution.empty())
         throw InputError(Fault{"--resolution", 0, 0, "", "is for glTF scenes; a Mitsuba scene's <film> has its size", "leave it out"});
     Definitions values;

@@ -21,6 +21,7 @@ struct SceneArguments {
     std::string path;
     std::vector<std::string> definitions;
     std::string resolution;  // empty: the camera's aspect ratio decides
+    std::optional<double> frame_time;
 
     void add_to(CLI::App& command);
     Scene read() const;

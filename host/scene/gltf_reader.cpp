@@ -7,12 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "scene/gltf/animation.h"
 #include "scene/gltf/cameras.h"
 #include "scene/gltf/environment.h"
 #include "scene/gltf/instancing.h"
 #include "scene/gltf/lights.h"
 #include "scene/gltf/materials.h"
-#include "scene/gltf/primitive.h"
+#include "scene/gltf/pose.h"
 
 namespace wavelobe {
 
@@ -32,6 +33,7 @@ public:
     }
 
     Scene run() {
+        animate(document_, accessors_, options_.frame_time, tree_);
         tree_.place();
         meshes_.check();
         materials_.check();
@@ -48,7 +50,11 @@ public:
 private:
     void add_shapes() {
         std::size_t triangles = 0;
-        for (const Element& node : document_.nodes) node.index("mesh", document_.meshes.size(), "meshes");
+        for (const Element& node : document_.nodes) {
+            node.index("mesh", document_.meshes.size(), "meshes");
+            node.index("skin", document_.skins.size(), "skins");
+        }
+        for (std::size_t skin = 0; skin < document_.skins.size(); ++skin) joint_matrices(document_, accessors_, skin, tree_);
         for (const std::size_t node : tree_.shown) {
             const auto mesh = document_.nodes[node].index("mesh", document_.meshes.size(), "meshes");
             if (!mesh) continue;
@@ -60,9 +66,27 @@ private:
                     return;
                 }
                 if (!document_.faults.empty()) continue;
-                for (const glm::dmat4& copy : copies) add_shape(node, *mesh, primitive, tree_.world[node] * copy);
+                show(node, *mesh, primitive, copies);
             }
         }
+    }
+
+    // Morphed, and then where its joints or its node take it.
+    void show(std::size_t node, std::size_t mesh, const Primitive& primitive, const std::vector<glm::dmat4>& copies) {
+        std::vector<double> weights = tree_.local[node].weights;
+        if (weights.empty()) weights = document_.meshes[mesh].numbers("weights");
+        const auto skin = document_.nodes[node].index("skin", document_.skins.size(), "skins");
+        const bool bends = skin && !primitive.influences.empty();
+        const bool morphs = !primitive.targets.empty() && std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0.0; });
+        if (!bends && !morphs) {
+            for (const glm::dmat4& copy : copies) add_shape(node, mesh, primitive, tree_.world[node] * copy);
+            return;
+        }
+        Primitive posed = primitive;
+        if (morphs) morph(posed, weights);
+        if (bends) bend(document_, joint_matrices(document_, accessors_, *skin, tree_), primitive.path, posed);
+        if (!document_.faults.empty()) return;
+        for (const glm::dmat4& copy : copies) add_shape(node, mesh, posed, bends ? copy : tree_.world[node] * copy);
     }
 
     void add_shape(std::size_t node, std::size_t mesh, const Primitive& primitive, const glm::dmat4& to_world) {

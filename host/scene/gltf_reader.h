@@ -1,6 +1,7 @@
 // Reads glTF 2.0, text and binary, into the neutral scene.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scene/scene.h"
@@ -10,6 +11,7 @@ namespace wavelobe {
 struct GltfOptions {
     int width = 0;  // of the picture; 0: what the camera's aspect ratio makes of 1280 x 720
     int height = 0;
+    std::optional<double> frame_time{};  // seconds into the first animation; none: nodes stand as the file has them
 };
 
 // Throws InputError with every fault found in the file and the files it names.

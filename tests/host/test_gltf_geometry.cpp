@@ -160,6 +160,69 @@ TEST(GltfGeometry, CamerasLookAlongMinusZ) {
     EXPECT_NEAR(std::tan(glm::radians(wide.camera.fov_x_degrees) / 2), 2.0 * std::tan(0.5), 1e-5);
 }
 
+TEST(GltfGeometry, AnimationsMoveNodes) {
+    struct Case {
+        const char* interpolation;
+        std::vector<float> values;
+        float expected;
+    };
+    // At a quarter of the way from x = 0 to x = 4; the spline with tangents of zero is 3 t^2 - 2 t^3.
+    for (const Case& c : {Case{"LINEAR", {0, 0, 0, 4, 0, 0}, 1.0F}, Case{"STEP", {0, 0, 0, 4, 0, 0}, 0.0F},
+                          Case{"CUBICSPLINE", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0}, 0.625F}}) {
+        GltfFile file;
+        file.add_mesh(unit_triangle());
+        const int times = file.add_floats({1, 3}, "SCALAR", 1);
+        const int values = file.add_floats(c.values, "VEC3", 3);
+        file.json["animations"] = Json::array(
+            {{{"samplers", Json::array({{{"input", times}, {"output", values}, {"interpolation", c.interpolation}}})},
+              {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}})}}});
+        EXPECT_EQ(mesh_of(file.read()).positions[0].x, 0.0F);
+        EXPECT_NEAR(mesh_of(file.read({.frame_time = 1.5})).positions[0].x, c.expected, 1e-6F) << c.interpolation;
+        EXPECT_NEAR(mesh_of(file.read({.frame_time = 9.0})).positions[0].x, 4.0F, 1e-6F) << c.interpolation;
+    }
+}
+
+TEST(GltfGeometry, MorphTargetsAddUp) {
+    GltfFile file;
+    Json& primitive = file.add_mesh(unit_triangle());
+    const int delta = file.add_floats({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
+    primitive["targets"] = Json::array({{{"POSITION", delta}}});
+    file.json["meshes"][0]["weights"] = {0.5};
+    EXPECT_EQ(mesh_of(file.read()).positions[2], glm::vec3(0, 1, 1.5F));
+    file.json["nodes"][0]["weights"] = {2.0};
+    EXPECT_EQ(mesh_of(file.read()).positions[1], glm::vec3(1, 0, 4));
+}
+
+TEST(GltfGeometry, SkinsFollowTheirJoints) {
+    GltfFile file;
+    Json& primitive = file.add_mesh(unit_triangle());
+    primitive["attributes"]["JOINTS_0"] = file.add(std::vector<std::uint8_t>{0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, "VEC4", 5121, 4);
+    primitive["attributes"]["WEIGHTS_0"] = file.add_floats({1, 0, 0, 0, 0.5F, 0.5F, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
+    const int matrices = file.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, "MAT4", 16);
+    file.json["skins"] = Json::array({{{"joints", {1, 2}}, {"inverseBindMatrices", matrices}}});
+    file.json["nodes"] = Json::array({{{"mesh", 0}, {"skin", 0}, {"translation", {100, 0, 0}}},
+                                      {{"translation", {2, 0, 0}}, {"children", {2}}},
+                                      {{"translation", {0, 6, 0}}}});
+    file.json["scenes"][0]["nodes"] = {0, 1};
+    const TriangleMesh mesh = mesh_of(file.read());
+    // Joint 0 moves by (2, 0, 0), joint 1 by (2, 5, 0); the node of the mesh by nothing.
+    expect_near(mesh.positions[0], {2, 0, 0});
+    expect_near(mesh.positions[1], {3, 2.5F, 0});
+    expect_near(mesh.positions[2], {2, 6, 0});
+    file.json["skins"][0]["joints"] = {1};
+    EXPECT_TRUE(has_text(file.faults(), "/meshes/0/primitives/0: vertex 1 follows joint 1; the skin has 1"));
+}
+
+TEST(GltfGeometry, GpuInstancesAreCopies) {
+    GltfFile file;
+    file.add_mesh(unit_triangle());
+    const int places = file.add_floats({1, 0, 0, 0, 5, 0}, "VEC3", 3);
+    file.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = places;
+    const Scene scene = file.read();
+    ASSERT_EQ(scene.shapes.size(), 2U);
+    EXPECT_EQ(mesh_of(scene, 1).positions[0], glm::vec3(0, 5, 0));
+}
+
 TEST(GltfGeometry, TheDefaultSceneIsShown) {
     GltfFile file;
     file.add_mesh(unit_triangle());

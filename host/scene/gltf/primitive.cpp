@@ -90,6 +90,22 @@ void Meshes::read_triangles(const Element& primitive, Primitive& out) {
     out.mesh.triangles = assemble(order, mode);
 }
 
+void Meshes::read_influences(const Element& attributes, Primitive& out) {
+    for (int set = 0; set < 8; ++set) {
+        const std::string joints = fmt::format("JOINTS_{}", set);
+        const std::string weights = fmt::format("WEIGHTS_{}", set);
+        if (!attributes.has(joints.c_str()) || !attributes.has(weights.c_str())) return;
+        Influence influence{grouped<glm::vec4>(attribute(attributes, joints.c_str(), {"VEC4"}, out.mesh.positions.size())),
+                            grouped<glm::vec4>(attribute(attributes, weights.c_str(), {"VEC4"}, out.mesh.positions.size()))};
+        for (const glm::vec4& j : influence.joints)
+            if (j.x < 0.0F || j.y < 0.0F || j.z < 0.0F || j.w < 0.0F) {
+                attributes.fault(joints + " has negative numbers");
+                return;
+            }
+        if (!influence.joints.empty() && !influence.weights.empty()) out.influences.push_back(std::move(influence));
+    }
+}
+
 Primitive Meshes::read(const Element& primitive) {
     Primitive out;
     const Element attributes = primitive.object("attributes");
@@ -107,6 +123,12 @@ Primitive Meshes::read(const Element& primitive) {
     if (color && accessors_[*color].components == 3)
         for (const glm::vec3& c : grouped<glm::vec3>(colors)) out.colors.emplace_back(c, 1.0F);
     else out.colors = grouped<glm::vec4>(colors);
+    read_influences(attributes, out);
+    for (const Element& target : primitive.objects("targets")) {
+        out.targets.push_back({grouped<glm::vec3>(attribute(target, "POSITION", {"VEC3"}, out.mesh.positions.size())),
+                               grouped<glm::vec3>(attribute(target, "NORMAL", {"VEC3"}, out.mesh.positions.size()))});
+    }
+    out.path = primitive.path();
     out.material = primitive.index("material", document_.materials.size(), "materials");
     read_triangles(primitive, out);
     return out;

@@ -12,13 +12,26 @@
 
 namespace wavelobe::gltf {
 
+struct MorphTarget {  // what a weight of one adds
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+};
+
+struct Influence {  // four joints of a skin a vertex
+    std::vector<glm::vec4> joints;
+    std::vector<glm::vec4> weights;
+};
+
 // Attributes are empty or one a vertex.
 struct Primitive {
     MeshSource mesh;
     std::vector<glm::vec4> tangents;
     std::vector<glm::vec4> colors;  // linear, alpha last
     std::vector<glm::vec2> second_uvs;
+    std::vector<MorphTarget> targets;
+    std::vector<Influence> influences;
     std::optional<std::size_t> material;
+    std::string path;  // in the document
 };
 
 // What of a mesh can be shown: a primitive of points or lines, or without positions, is passed over with a warning.
@@ -35,6 +48,7 @@ public:
 private:
     Primitive read(const Element& primitive);
     void read_triangles(const Element& primitive, Primitive& out);
+    void read_influences(const Element& attributes, Primitive& out);
     std::vector<std::uint32_t> vertex_order(const Element& primitive, std::size_t vertices);
     // Numbers of an attribute; empty when it is absent or faulty. `types` are those it may have.
     std::vector<float> attribute(const Element& attributes, const char* name, std::initializer_list<const char*> types,

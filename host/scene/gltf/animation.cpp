@@ -1,0 +1,129 @@
+#include "scene/gltf/animation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace wavelobe::gltf {
+
+namespace {
+
+enum class Interpolation { step, linear, cubic };
+
+struct Keys {
+    std::vector<float> times;   // seconds, ascending
+    std::vector<float> values;  // `width` a key; three times that for cubic splines: in-tangent, value, out-tangent
+    std::size_t width = 0;
+    Interpolation interpolation = Interpolation::linear;
+};
+
+Keys read_keys(const Element& sampler, const Accessors& accessors) {
+    Keys keys;
+    for (const char* name : {"input", "output"}) sampler.require(name);
+    const auto input = sampler.index("input", accessors.size(), "accessors");
+    const auto output = sampler.index("output", accessors.size(), "accessors");
+    const std::string how = sampler.text("interpolation", "LINEAR");
+    if (how == "STEP") keys.interpolation = Interpolation::step;
+    else if (how == "CUBICSPLINE") keys.interpolation = Interpolation::cubic;
+    else if (how != "LINEAR") sampler.fault("interpolation `" + how + "`; expected LINEAR, STEP or CUBICSPLINE");
+    if (!input || !output || !accessors[*input].readable || !accessors[*output].readable) return {};
+    if (accessors[*input].components != 1 || accessors[*input].component_type != 5126) {
+        sampler.fault("`input` is not of floats");
+        return {};
+    }
+    keys.times = accessors.floats(*input);
+    keys.values = accessors.floats(*output);
+    const auto finite = [](float v) { return std::isfinite(v); };
+    if (!std::all_of(keys.times.begin(), keys.times.end(), finite) || !std::all_of(keys.values.begin(), keys.values.end(), finite)) {
+        sampler.fault("has keys that are not finite");
+        return {};
+    }
+    if (std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater_equal<>()) != keys.times.end()) {
+        sampler.fault("has times that do not ascend");
+        return {};
+    }
+    const std::size_t rows = keys.times.size() * (keys.interpolation == Interpolation::cubic ? 3 : 1);
+    keys.width = keys.values.size() / rows;
+    if (keys.width == 0 || keys.values.size() % rows != 0) {
+        sampler.fault(fmt::format("{} numbers for {} keys", keys.values.size(), keys.times.size()));
+        return {};
+    }
+    return keys;
+}
+
+// The value at a time, that of the first or last key outside their range (specification, section 3.11 and appendix C).
+std::vector<double> value_at(const Keys& keys, double time, bool rotation) {
+    const bool cubic = keys.interpolation == Interpolation::cubic;
+    const std::size_t n = keys.width;
+    const auto value = [&](std::size_t key, std::size_t row, std::size_t i) {
+        return static_cast<double>(keys.values[(cubic ? 3 * key + row : key) * n + i]);
+    };
+    const auto next = static_cast<std::size_t>(
+        std::upper_bound(keys.times.begin(), keys.times.end(), time, [](double t, float key) { return t < static_cast<double>(key); }) - keys.times.begin());
+    const std::size_t k = next == 0 ? 0 : next - 1;
+    std::vector<double> out(n);
+    for (std::size_t i = 0; i < n; ++i) out[i] = value(k, 1, i);
+    if (next == 0 || next == keys.times.size() || keys.interpolation == Interpolation::step) return out;
+
+    const double span = static_cast<double>(keys.times[next]) - static_cast<double>(keys.times[k]);
+    const double t = (time - static_cast<double>(keys.times[k])) / span;
+    if (cubic) {
+        const double t2 = t * t;
+        const double t3 = t2 * t;
+        for (std::size_t i = 0; i < n; ++i)
+            out[i] = (2 * t3 - 3 * t2 + 1) * value(k, 1, i) + span * (t3 - 2 * t2 + t) * value(k, 2, i) +
+                     (-2 * t3 + 3 * t2) * value(next, 1, i) + span * (t3 - t2) * value(next, 0, i);
+    } else if (rotation) {
+        const glm::dquat a(value(k, 1, 3), value(k, 1, 0), value(k, 1, 1), value(k, 1, 2));
+        const glm::dquat b(value(next, 1, 3), value(next, 1, 0), value(next, 1, 1), value(next, 1, 2));
+        const glm::dquat q = glm::slerp(a, b, t);
+        out = {q.x, q.y, q.z, q.w};
+    } else {
+        for (std::size_t i = 0; i < n; ++i) out[i] = (1.0 - t) * out[i] + t * value(next, 1, i);
+    }
+    return out;
+}
+
+void set_channel(const Element& target, const std::string& path, const Keys& keys, double time, LocalTransform& local) {
+    const bool rotation = path == "rotation";
+    if (path != "weights" && keys.width != (rotation ? 4U : 3U)) {
+        target.fault(fmt::format("{} numbers a key for `{}`", keys.width, path));
+        return;
+    }
+    const std::vector<double> v = value_at(keys, time, rotation);
+    if (path == "weights") local.weights = v;
+    else if (path == "translation") local.translation = {v[0], v[1], v[2]};
+    else if (path == "scale") local.scale = {v[0], v[1], v[2]};
+    else if (const glm::dquat q(v[3], v[0], v[1], v[2]); glm::length(q) > 0.0) local.rotation = glm::normalize(q);
+}
+
+void animate_one(Document& document, const Element& animation, const Accessors& accessors, std::optional<double> time, NodeTree& tree) {
+    std::vector<Keys> samplers;
+    for (const Element& sampler : animation.objects("samplers")) samplers.push_back(read_keys(sampler, accessors));
+    for (const Element& channel : animation.objects("channels")) {
+        for (const char* name : {"sampler", "target"}) channel.require(name);
+        const auto sampler = channel.index("sampler", samplers.size(), "samplers");
+        const Element target = channel.object("target");
+        target.require("path");
+        const auto node = target.index("node", document.nodes.size(), "nodes");
+        const std::string path = target.text("path", "translation");
+        const bool known = path == "translation" || path == "rotation" || path == "scale" || path == "weights";
+        if (!known) document.warn(fmt::format("{}: {}: the path `{}` is passed over", document.file, target.path(), path));
+        if (!known || !time || !sampler || !node || samplers[*sampler].width == 0) continue;
+        set_channel(target, path, samplers[*sampler], *time, tree.local[*node]);
+    }
+}
+
+}  // namespace
+
+void animate(Document& document, const Accessors& accessors, std::optional<double> time, NodeTree& tree) {
+    for (std::size_t i = 0; i < document.animations.size(); ++i)
+        animate_one(document, document.animations[i], accessors, i == 0 ? time : std::nullopt, tree);
+    if (!time) return;
+    if (document.animations.empty()) document.warn(document.file + ": no animation; --frame-time changes nothing");
+    else if (document.animations.size() > 1)
+        document.warn(fmt::format("{}: of {} animations the first is shown", document.file, document.animations.size()));
+}
+
+}  // namespace wavelobe::gltf

@@ -1,0 +1,140 @@
+// glTF: materials, textures, lights.
+#include <gtest/gtest.h>
+
+#include "film/png.h"
+#include "support/gltf_files.h"
+
+namespace wavelobe::test {
+namespace {
+
+// A triangle of this material.
+struct MaterialFile : GltfFile {
+    explicit MaterialFile(const Json& material) {
+        add_mesh(unit_triangle())["material"] = 0;
+        json["materials"] = Json::array({material});
+    }
+};
+
+// A picture of one texel as a data URI.
+Json image_of(const Rgb& linear) { return {{"uri", "data:image/png;base64," + base64(encode_png({1, 1, {linear.r, linear.g, linear.b}}))}}; }
+
+template <class Model>
+Model model_of(const Scene& scene) {
+    return std::get<Model>(scene.materials.at(static_cast<std::size_t>(scene.shapes.at(0).material.front)).model);
+}
+
+TEST(GltfMaterials, DefaultsAreTheSpecifications) {
+    GltfFile file;
+    file.add_mesh(unit_triangle());
+    const Scene scene = file.read();
+    const auto model = model_of<MetallicRoughness>(scene);
+    EXPECT_EQ(model.base_color.value, Rgb(1.0F));
+    EXPECT_EQ(model.metallic.value.x, 1.0F);
+    EXPECT_EQ(model.roughness.value.x, 1.0F);
+    EXPECT_EQ(scene.shapes[0].material.back, scene.shapes[0].material.front);
+}
+
+TEST(GltfMaterials, FactorsAndExtensions) {
+    MaterialFile file(Json{{"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.2, 0.3, 1}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.5}}},
+                                   {"emissiveFactor", {1, 0.5, 0}},
+                                   {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}},
+                                                   {"KHR_materials_ior", {{"ior", 1.8}}},
+                                                   {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 3}}}}}}});
+    const Scene scene = file.read();
+    const auto model = model_of<MetallicRoughness>(scene);
+    EXPECT_EQ(model.base_color.value, Rgb(0.1F, 0.2F, 0.3F));
+    EXPECT_EQ(model.metallic.value.x, 0.25F);
+    EXPECT_EQ(model.roughness.value.x, 0.5F);
+    EXPECT_EQ(model.ior, 1.8F);
+    EXPECT_EQ(model.specular, 0.5F);
+    EXPECT_EQ(model.specular_color, Rgb(1, 2, 3));
+    ASSERT_TRUE(scene.shapes[0].emitter);
+    EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(4, 2, 0));
+}
+
+TEST(GltfMaterials, TexturesKeepTheirSpaceSamplerAndTransform) {
+    const Json both = {{"index", 0},
+                       {"texCoord", 1},
+                       {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}, {"rotation", 1.5707963267948966}, {"scale", {2, 3}}}}}}};
+    MaterialFile file(Json{{"pbrMetallicRoughness", {{"baseColorTexture", both}, {"metallicRoughnessTexture", both}}}});
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = file.add_floats({0, 0, 0, 0, 0, 0}, "VEC2", 2);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = file.add_floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    file.json["samplers"] = Json::array({{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}});
+    file.json["textures"] = Json::array({{{"source", 0}, {"sampler", 0}}});
+    file.json["images"] = Json::array({image_of(Rgb(0.5F))});
+    const Scene scene = file.read();
+    const auto model = model_of<MetallicRoughness>(scene);
+    const auto& color = std::get<Bitmap>(model.base_color.texture->source);
+    EXPECT_NEAR(color.rgb[0], 0.5F, 0.005F);  // decoded from sRGB
+    EXPECT_EQ(color.wrap, Wrap::clamp);
+    EXPECT_EQ(color.row_wrap, Wrap::mirror);
+    EXPECT_EQ(color.filter, Filter::nearest);
+    const auto& data = std::get<Bitmap>(model.roughness.texture->source);
+    EXPECT_NEAR(data.rgb[0], 188.0F / 255.0F, 1e-6F);  // as stored
+    EXPECT_EQ(model.roughness.channel, 1);
+    EXPECT_EQ(model.metallic.channel, 2);
+    EXPECT_EQ(mesh_of(scene).uvs[1], glm::vec2(1, 0));
+    // (1, 0) is scaled to (2, 0), turned to (0, -2), moved to (0.5, -2).
+    const glm::vec3 uv = model.base_color.texture->to_uv * glm::vec3(1, 0, 1);
+    EXPECT_NEAR(uv.x, 0.5F, 1e-6F);
+    EXPECT_NEAR(uv.y, -2.0F, 1e-6F);
+}
+
+TEST(GltfMaterials, AlphaModes) {
+    const auto opacity = [](const char* mode) {
+        return MaterialFile(Json{{"alphaMode", mode}, {"alphaCutoff", 0.3}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}}).read().shapes.at(0).material.opacity;
+    };
+    EXPECT_EQ(opacity("OPAQUE").value.value.x, 1.0F);
+    EXPECT_EQ(opacity("BLEND").value.value.x, 0.25F);
+    EXPECT_FALSE(opacity("BLEND").cutoff);
+    EXPECT_EQ(opacity("MASK").cutoff, 0.3F);
+}
+
+TEST(GltfMaterials, UnlitSurfacesShineInTheirColour) {
+    const Scene scene = MaterialFile(Json{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}}},
+                                       {"extensions", {{"KHR_materials_unlit", Json::object()}}}}).read();
+    EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(0.5F, 0.25F, 0.125F));
+    EXPECT_EQ(model_of<Diffuse>(scene).reflectance.value, Rgb(0.0F));
+}
+
+TEST(GltfMaterials, PunctualLights) {
+    GltfFile file;
+    file.add_mesh(unit_triangle());
+    file.json["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::array({{{"type", "point"}, {"intensity", 2}, {"color", {1, 0.5, 0}}},
+                     {{"type", "directional"}},
+                     {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.5}}}}});
+    for (int light = 0; light < 3; ++light) {
+        Json node = {{"translation", {0, 4, 0}}};
+        node["extensions"]["KHR_lights_punctual"]["light"] = light;
+        file.json["nodes"].push_back(node);
+    }
+    file.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
+    const Scene scene = file.read();
+    ASSERT_EQ(scene.emitters.size(), 3U);
+    EXPECT_TRUE(scene.notes.empty());
+    EXPECT_EQ(std::get<PointEmitter>(scene.emitters[0]).intensity, Rgb(2, 1, 0));
+    EXPECT_EQ(std::get<PointEmitter>(scene.emitters[0]).position, glm::vec3(0, 4, 0));
+    EXPECT_EQ(std::get<DirectionalEmitter>(scene.emitters[1]).direction, glm::vec3(0, 0, -1));
+    EXPECT_NEAR(std::get<SpotEmitter>(scene.emitters[2]).cutoff_degrees, glm::degrees(0.5F), 1e-4F);
+}
+
+TEST(GltfMaterials, FaultsOfImagesAndMaterials) {
+    const auto faults = [](const Json& image) {
+        MaterialFile file(Json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+        file.json["textures"] = Json::array({{{"source", 0}}});
+        file.json["images"] = Json::array({image});
+        return file.faults();
+    };
+    EXPECT_TRUE(faults(image_of(Rgb(1.0F))).empty());
+    EXPECT_TRUE(has_text(faults({{"uri", "absent.png"}}), "absent.png"));
+    EXPECT_TRUE(has_text(faults({{"uri", "data:image/png;base64,AAAA"}}), "not an image of a supported format"));
+    EXPECT_TRUE(has_text(faults({{"bufferView", 77}}), "/images/0/bufferView: is 77"));
+    EXPECT_TRUE(has_text(faults(Json::object()), "/images/0: expected either"));
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"pbrMetallicRoughness", {{"roughnessFactor", -1}}}}).faults(), "/materials/0/pbrMetallicRoughness/roughnessFactor: is -1"));
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"alphaMode", "GLASS"}}).faults(), "alphaMode `GLASS`"));
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 3}}}}}}).faults(), "the file has 0 textures"));
+}
+
+}  // namespace
+}  // namespace wavelobe::test
