@@ -76,6 +76,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_UVS", f.uvs);
     out.define("HAS_ANALYTIC", f.analytic);
+    out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TRANSMISSION", f.transmission);
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
@@ -175,6 +176,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(smooth_normals, "smooth_normals");
     add(uvs, "uvs");
     add(analytic, "analytic_shapes");
+    add(instances, "instances");
     add(anisotropy, "anisotropy");
     add(transmission, "transmission");
     add(unlike_sides, "unlike_sides");
@@ -237,15 +239,15 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    constexpr std::size_t fields_without_origin = RAY_FIELDS - 3;
-    const std::size_t traced = features.analytic ? RAY_FIELDS : fields_without_origin;
+    const std::size_t fields = RAY_FIELDS + (features.instances ? 1 : 0);
+    const std::size_t traced = features.analytic ? fields : fields - 3;
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;
     if (features.has_surface_lights()) ++queues;
     for (const std::uint32_t c : {LOBE_CLASS_DELTA, LOBE_CLASS_GLOSSY, LOBE_CLASS_DIFFUSE}) {
         if (features.has_lobe_class(c)) ++queues;
     }
-    return stride * (RAY_FIELDS + queues * traced + SHADOW_FIELDS) +
+    return stride * (fields + queues * traced + SHADOW_FIELDS) +
            std::size_t{3} * TILE_PIXELS * BLOCK_SAMPLES;
 }
 

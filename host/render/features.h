@@ -33,6 +33,7 @@ struct FeatureSet {
     bool smooth_normals = false;
     bool uvs = false;
     bool analytic = false;
+    bool instances = false;
     bool anisotropy = false;
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material

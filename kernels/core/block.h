@@ -19,10 +19,16 @@
 #define PATH_ID 11u       // of the path within its block
 #define PATH_DEPTH 12u    // vertices before this one
 #define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette
-#define PATH_ORIGIN 14u   // 3
+#if HAS_INSTANCES
+#define PATH_INSTANCE 14u // of the hit, or INSTANCE_NONE
+#define PATH_ORIGIN 15u   // 3
+#else
+#define PATH_ORIGIN 14u
+#endif
+#define PATH_FIELDS (PATH_ORIGIN + 3u)
 
 #if HAS_ANALYTIC
-#define TRACED_FIELDS RAY_FIELDS
+#define TRACED_FIELDS PATH_FIELDS
 #else
 #define TRACED_FIELDS PATH_ORIGIN
 #endif
@@ -36,7 +42,7 @@
 
 #define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
 #define RAYS_OFFSET 0u
-#define ESCAPED_OFFSET (RAYS_OFFSET + RAY_FIELDS * QUEUE_STRIDE)
+#define ESCAPED_OFFSET (RAYS_OFFSET + PATH_FIELDS * QUEUE_STRIDE)
 #define EMITTED_OFFSET (ESCAPED_OFFSET + HAS_ENVIRONMENT * TRACED_FIELDS * QUEUE_STRIDE)
 #define DELTA_OFFSET (EMITTED_OFFSET + HAS_SURFACE_LIGHTS * TRACED_FIELDS * QUEUE_STRIDE)
 #define GLOSSY_OFFSET (DELTA_OFFSET + HAS_DELTA_LOBES * TRACED_FIELDS * QUEUE_STRIDE)

@@ -8,7 +8,7 @@
 // Hits lie strictly between 0 and `limit`.
 typedef struct {
     float ox, oy, oz;
-    float dx, dy, dz; // unit
+    float dx, dy, dz; // unit, but for rays in an instance
     float limit;
 #if HAS_MASKS
     uint key; // what is drawn where opacity lets some rays pass (shapes/opacity.h)
@@ -19,6 +19,9 @@ typedef struct {
     float t;
     float u, v;    // barycentric weights of the second and third vertex
     uint primitive; // HIT_NONE, a triangle slot, or HIT_ANALYTIC | index
+#if HAS_INSTANCES
+    uint instance; // in which the primitive was hit, or INSTANCE_NONE
+#endif
 } Hit;
 
 // Rays that are not numbers hit nothing. The box test must not see them: which of its comparisons a NaN passes is chance.

@@ -11,6 +11,9 @@
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
+#if HAS_INSTANCES
+#include "shapes/instance.h"
+#endif
 
 // The buffers that describe surfaces. Kernels take SURFACE_PARAMETERS and write SURFACE_VIEW.
 typedef struct {
@@ -27,6 +30,9 @@ typedef struct {
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     uint triangle_count;
+#endif
+#if HAS_INSTANCES
+    global const struct Instance *instances;
 #endif
 } SurfaceView;
 
@@ -52,12 +58,21 @@ typedef struct {
 #define ANALYTIC_ARGUMENT
 #endif
 
+#if HAS_INSTANCES
+#define INSTANCES_PARAMETER , global const struct Instance *instances
+#define INSTANCES_ARGUMENT , instances
+#else
+#define INSTANCES_PARAMETER
+#define INSTANCES_ARGUMENT
+#endif
+
 #define SURFACE_PARAMETERS                                                                                  \
     global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
-        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER ANALYTIC_PARAMETER
+        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER ANALYTIC_PARAMETER INSTANCES_PARAMETER
 #define SURFACE_VIEW \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT ANALYTIC_ARGUMENT}
+    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT ANALYTIC_ARGUMENT \
+         INSTANCES_ARGUMENT}
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -71,6 +86,9 @@ typedef struct {
 #endif
 #if HAS_TRANSMISSION
     Float eta;
+#endif
+#if HAS_INSTANCES
+    UInt instance;
 #endif
     Int live; // lanes that hold a path
 } TracedPath;
@@ -105,6 +123,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #endif
 #if HAS_TRANSMISSION
     p.eta = read_field(q, PATH_ETA, i);
+#endif
+#if HAS_INSTANCES
+    p.instance = SELECT(p.live, read_uint(q, PATH_INSTANCE, i), (UInt)INSTANCE_NONE);
 #endif
     return p;
 }
@@ -213,7 +234,13 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
 #if HAS_ANALYTIC
 INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surface *out) {
     UInt index = SELECT(analytic, p->hit & (UInt)~HIT_ANALYTIC, (UInt)0u);
-    AnalyticHit h = analytic_hit(s.analytics, index, p->origin, p->direction, p->t);
+    Vec3 origin = p->origin, direction = p->direction;
+#if HAS_INSTANCES
+    InstanceMap m = instance_map(s.instances, p->instance);
+    origin = select3(m.placed, point_to_instance(&m, origin), origin);
+    direction = select3(m.placed, vector_to_instance(&m, direction), direction);
+#endif
+    AnalyticHit h = analytic_hit(s.analytics, index, origin, direction, p->t);
     out->position = select3(analytic, h.position, out->position);
     out->error = select3(analytic, h.error, out->error);
     out->normal = select3(analytic, h.normal, out->normal);
@@ -227,6 +254,29 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->frame.s = select3(analytic, frame.s, out->frame.s);
     out->frame.t = select3(analytic, frame.t, out->frame.t);
     out->frame.n = select3(analytic, frame.n, out->frame.n);
+}
+#endif
+
+#if HAS_INSTANCES
+// From the space of a group to the world.
+INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
+    InstanceMap m = instance_map(s.instances, instance);
+    if (!any_lane(m.placed)) return;
+    Vec3 error = out->error;
+    Vec3 position = instance_point(&m, out->position, &error);
+    Vec3 normal = normalize_any_scale(instance_normal(&m, out->normal));
+    Vec3 n = normalize_any_scale(instance_normal(&m, out->frame.n));
+#if HAS_ANISOTROPY
+    Frame frame = frame_along(n, normalize_any_scale(instance_vector(&m, out->frame.s)));
+#else
+    Frame frame = frame_of_normal(n);
+#endif
+    out->position = select3(m.placed, position, out->position);
+    out->error = select3(m.placed, error, out->error);
+    out->normal = select3(m.placed, normal, out->normal);
+    out->frame.s = select3(m.placed, frame.s, out->frame.s);
+    out->frame.t = select3(m.placed, frame.t, out->frame.t);
+    out->frame.n = select3(m.placed, frame.n, out->frame.n);
 }
 #endif
 
@@ -264,6 +314,9 @@ INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
     if (any_lane(analytic)) load_analytic(s, p, analytic, &out);
 #else
     load_triangle(s, p, p->hit, first_primitive, &out);
+#endif
+#if HAS_INSTANCES
+    place_surface(s, p->instance, &out);
 #endif
     choose_side(s, p, &out);
     return out;
