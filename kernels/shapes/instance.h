@@ -1,8 +1,7 @@
 // Instances: groups of shapes that stand in several places. Rays go to the group's space, surfaces come back from it.
 //
-// Distances along a ray are the same in both spaces: its direction is not made unit again. The ray is moved to the
-// instance's origin first, so that the rounding of the map is relative to the distance from there and not to the world's
-// coordinates. What both maps may round is part of the surface's error bound, and a ray that leaves a surface stays on its
+// The ray is moved to the instance's origin first, so that the rounding of the map is relative to the distance from there
+// and not to the world's coordinates. Its direction is made unit again. What both maps may round is part of the surface's error bound, and a ray that leaves a surface stays on its
 // side in the group's space too. (Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing Rounding Error".)
 #ifndef WAVELOBE_SHAPES_INSTANCE_H
 #define WAVELOBE_SHAPES_INSTANCE_H
@@ -10,21 +9,27 @@
 #include "core/rounding.h"
 #include "shapes/ray.h"
 
-// The same ray in the space of the instance's group.
-INLINE Ray instance_ray(global const struct Instance *instances, uint index, const Ray *r) {
+// The same ray in the space of the instance's group, where its distances are `stretch` times as long.
+INLINE Ray instance_ray(global const struct Instance *instances, uint index, const Ray *r, float *stretch) {
     global const struct Instance *s = instances + index;
     global const float *w = s->to_world.m, *m = s->to_object;
     float fx = r->ox - w[3], fy = r->oy - w[7], fz = r->oz - w[11];
+    float dx = m[0] * r->dx + m[1] * r->dy + m[2] * r->dz;
+    float dy = m[3] * r->dx + m[4] * r->dy + m[5] * r->dz;
+    float dz = m[6] * r->dx + m[7] * r->dy + m[8] * r->dz;
+    float length = sqrt(dx * dx + dy * dy + dz * dz), shrink = 1.0f / length;
     Ray moved = *r;
     moved.ox = m[0] * fx + m[1] * fy + m[2] * fz;
     moved.oy = m[3] * fx + m[4] * fy + m[5] * fz;
     moved.oz = m[6] * fx + m[7] * fy + m[8] * fz;
-    moved.dx = m[0] * r->dx + m[1] * r->dy + m[2] * r->dz;
-    moved.dy = m[3] * r->dx + m[4] * r->dy + m[5] * r->dz;
-    moved.dz = m[6] * r->dx + m[7] * r->dy + m[8] * r->dz;
+    moved.dx = dx * shrink;
+    moved.dy = dy * shrink;
+    moved.dz = dz * shrink;
+    moved.limit = r->limit * length;
 #if HAS_MASKS
     moved.key ^= (index + 1u) * 0x9e3779b9u; // the instances of a shape are passed one by one
 #endif
+    *stretch = length;
     return moved;
 }
 

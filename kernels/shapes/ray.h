@@ -8,7 +8,7 @@
 // Hits lie strictly between 0 and `limit`.
 typedef struct {
     float ox, oy, oz;
-    float dx, dy, dz; // unit, but for rays in an instance
+    float dx, dy, dz; // unit
     float limit;
 #if HAS_MASKS
     uint key; // what is drawn where opacity lets some rays pass (shapes/opacity.h)

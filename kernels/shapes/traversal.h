@@ -180,8 +180,9 @@ INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShea
 
 #if HAS_INSTANCES
 // Turns the traversal to the space of an instance; 0 if the ray gets lost on the way.
-INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, BoxTest *box, RayShear *shear) {
-    *inner = instance_ray(g.instances, index, world);
+INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, float *stretch, BoxTest *box,
+                          RayShear *shear) {
+    *inner = instance_ray(g.instances, index, world, stretch);
     *box = box_test(inner);
     *shear = ray_shear(inner);
     return is_finite_ray(inner);
@@ -207,7 +208,8 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
     const Ray *world = r;
     Ray inner;
     uint instance = INSTANCE_NONE;
-    float found = hit.t;
+    float found = hit.t; // the nearest hit of which it is known in what instance it is
+    float outside = hit.t, entered = hit.t, stretch; // the limit before the instance, the same in its space
 #endif
     for (;;) {
         while (!(current & BVH_LEAF)) {
@@ -226,8 +228,10 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
 #if HAS_INSTANCES
         if (current & BVH_INSTANCE) {
             instance = current & ~(BVH_LEAF | BVH_INSTANCE);
-            if (!enter_instance(g, instance, world, &inner, &box, &shear)) goto leave;
+            if (!enter_instance(g, instance, world, &inner, &stretch, &box, &shear)) goto leave;
             r = &inner;
+            outside = hit.t;
+            hit.t = entered = found = outside * stretch;
             stack[top++] = BVH_RETURN;
             current = g.instances[instance].root;
             continue;
@@ -246,6 +250,7 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
         if (current == BVH_EMPTY) return hit;
 #if HAS_INSTANCES
         if (current == BVH_RETURN) {
+            hit.t = found = hit.t < entered ? min(hit.t / stretch, outside) : outside;
         leave:
             r = world;
             instance = INSTANCE_NONE;
@@ -283,6 +288,7 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
 #if HAS_INSTANCES
     const Ray *world = r;
     Ray inner;
+    float stretch;
 #endif
     for (;;) {
         while (!(current & BVH_LEAF)) {
@@ -323,7 +329,7 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
 #if HAS_INSTANCES
         if (current & BVH_INSTANCE) {
             uint instance = current & ~(BVH_LEAF | BVH_INSTANCE);
-            if (!enter_instance(g, instance, world, &inner, &box, &shear)) goto leave;
+            if (!enter_instance(g, instance, world, &inner, &stretch, &box, &shear)) goto leave;
             r = &inner;
             stack[top++] = BVH_RETURN;
             current = g.instances[instance].root;

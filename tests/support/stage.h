@@ -30,6 +30,7 @@ struct TestPath {
     std::uint32_t depth = 0;
     float eta = 1.0F;     // only in scenes with transmission
     glm::vec3 origin{0};  // traced paths keep it only in scenes with analytic shapes
+    std::uint32_t instance = INSTANCE_NONE;  // only in scenes with instances
 };
 
 struct TestShadowRay {
@@ -104,6 +105,7 @@ public:
         set_bits(queue, layout_[path_depth], slot, p.depth);
         set(queue, layout_[path_eta], slot, p.eta);
         if (keeps_origin(queue)) set_vector(queue, layout_[path_origin], slot, p.origin);
+        if (scene_.features.instances) set_bits(queue, layout_[path_instance], slot, p.instance);
     }
 
     TestPath path(std::uint32_t queue, std::uint32_t slot) {
@@ -117,7 +119,8 @@ public:
                 get_bits(queue, layout_[path_id], slot),
                 get_bits(queue, layout_[path_depth], slot),
                 get(queue, layout_[path_eta], slot),
-                keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0}};
+                keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0},
+                scene_.features.instances ? get_bits(queue, layout_[path_instance], slot) : INSTANCE_NONE};
     }
 
     void fill_shadows(const std::vector<TestShadowRay>& rays) {
@@ -167,6 +170,7 @@ private:
         path_depth,
         path_eta,
         path_origin,
+        path_instance,
         shadow_t,
         shadow_direction,
         shadow_contribution,
@@ -175,10 +179,14 @@ private:
         layout_size
     };
     static constexpr const char* layout_source = R"(
+#if !HAS_INSTANCES
+#define PATH_INSTANCE 0u // there is none
+#endif
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
-                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_ORIGIN, SHADOW_T,
+                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_ORIGIN,
+                           PATH_INSTANCE, SHADOW_T,
                            SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }

@@ -9,13 +9,13 @@ namespace {
 bool may_be_instanced(Context& context, const Child& child) {
     const Object& object = *child.object;
     if (object.type == "instance" || object.type == "shapegroup") {
-        context.faults.add(child.place, object.label(), "instances do not nest: a shapegroup cannot hold a " + object.type,
+        context.faults.add(child.place, object.label(), "instances do not nest: a shapegroup cannot hold " + object.type + "s",
                            "place its shapes in the group themselves");
         return false;
     }
     for (const Child& inner : object.children) {
         if (inner.object == nullptr || (inner.object->tag != "emitter" && inner.object->tag != "sensor")) continue;
-        context.faults.add(inner.place, inner.object->label(), "a shape in a shapegroup cannot hold an " + inner.object->tag,
+        context.faults.add(inner.place, inner.object->label(), "a shape in a shapegroup cannot hold an emitter or sensor",
                            "place the shape outside of the group");
         return false;
     }
