@@ -63,9 +63,10 @@ std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
     const std::uint64_t film =
         std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height * sizeof(FilmPixel);
     return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
-           bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.analytics) +
-           scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
-           bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) + bytes_of(scene.texels) + bytes_of(scene.lights) +
+           bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.colors) +
+           bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
+           bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
+           bytes_of(scene.texels) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
            bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
 }
 
@@ -93,11 +94,13 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("opacities", scene.opacities);
     add("normals", scene.normals);
     add("uvs", scene.uvs);
+    add("colors", scene.colors);
     add("analytics", scene.analytics);
     add("instances", scene.instances);
     add("textures", scene.textures);
     add("texels", scene.texels.empty() && !scene.textures.empty() ? std::vector<float>(1) : scene.texels);
     add("lights", scene.lights);
+    add("light_tree", scene.light_tree);
     add("environment", scene.environment);
     add("environment_texels", scene.environment_texels);
     add("environment_alias", scene.environment_alias);
@@ -105,7 +108,7 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
-    add_zeros<FilmPixel>("film", pixels);
+    add_zeros<FilmPixel>("film", pixels * (scene.features.error_estimate ? 2 : 1));
 }
 
 void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {

@@ -75,6 +75,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_UVS", f.uvs);
+    out.define("HAS_VERTEX_COLORS", f.vertex_colors);
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
@@ -84,6 +85,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
     out.define("HAS_MASKS", f.masks);
     out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
@@ -96,6 +98,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ENVIRONMENT", f.has_environment());
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
+    out.define("HAS_LIGHT_TREE", f.light_tree);
     out.define("HAS_FEW_TRIANGLES", f.few_triangles);
     if (!f.few_triangles) out.define_unsigned("BVH_STACK", f.bvh_stack);
 }
@@ -175,6 +178,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(textured_emitters, "textured_emitters");
     add(smooth_normals, "smooth_normals");
     add(uvs, "uvs");
+    add(vertex_colors, "vertex_colors");
     add(analytic, "analytic_shapes");
     add(instances, "instances");
     add(anisotropy, "anisotropy");
@@ -185,8 +189,10 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(error_estimate, "error_estimate");
     add(masks, "masks");
     add(veiled_emitters, "veiled_emitters");
+    add(light_tree, "light_tree");
     add(few_triangles, "few_triangles");
     return out;
 }
@@ -239,8 +245,8 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    const std::size_t fields = RAY_FIELDS + (features.instances ? 1 : 0);
-    const std::size_t traced = features.analytic ? fields : fields - 3;
+    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.instances ? 1 : 0);
+    const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;
     if (features.has_surface_lights()) ++queues;

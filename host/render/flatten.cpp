@@ -49,7 +49,12 @@ public:
         add_instances(groups);
         const Bounds bounds = bounds_of_scene(out_);
         const double radius = out_.primitive_shapes.empty() ? 1.0 : 0.5 * glm::length(glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
-        for (const Emitter& emitter : scene_.emitters) lights_.add_emitter(emitter, radius);
+        // Lights with a place go before those at infinity.
+        for (const bool placed : {true, false}) {
+            for (const Emitter& emitter : scene_.emitters) {
+                if (LightFlattener::has_place(emitter) == placed) lights_.add_emitter(emitter, radius);
+            }
+        }
         lights_.finish();
         set_parameters();
         out_.filter_table = build_filter_table(scene_.film.filter);
@@ -108,6 +113,7 @@ private:
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
         s.first_uv = WAVELOBE_NONE;
+        s.first_color = WAVELOBE_NONE;
         s.first_light = WAVELOBE_NONE;
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
@@ -149,6 +155,10 @@ private:
             out_.features.smooth_normals = true;
         }
         if (!mesh.uvs.empty()) s.first_uv = offset(out_.uvs.size(), shape);
+        if (!mesh.colors.empty()) {
+            s.first_color = offset(out_.colors.size(), shape);
+            out_.features.vertex_colors = true;
+        }
         const auto index = static_cast<std::uint32_t>(out_.shapes.size());
         for (const glm::uvec3& t : mesh.triangles) {
             out_.triangles.push_back({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]});
@@ -157,6 +167,7 @@ private:
                 const std::uint32_t vertex = t[corner];
                 if (!mesh.normals.empty()) append(out_.normals, mesh.normals[vertex]);
                 if (!mesh.uvs.empty()) append(out_.uvs, mesh.uvs[vertex]);
+                if (!mesh.colors.empty()) append(out_.colors, mesh.colors[vertex]);
             }
         }
         if (emits(shape)) {
@@ -234,13 +245,12 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     const double area = analytic_area(analytic);
     a.area = static_cast<float>(area);
     a.radius = static_cast<float>(glm::length(glm::dvec3(analytic.to_world[0])));
-    if (emits(shape)) {
-        lights_.add_analytic(*shape.emitter, lights[kind], static_cast<std::uint32_t>(out_.analytics.size()), area);
-    }
-    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
-    out_.shapes.push_back(s);
+    const auto index = static_cast<std::uint32_t>(out_.analytics.size());
     out_.analytics.push_back(a);
     out_.analytic_bounds.push_back(analytic_bounds(analytic));
+    if (emits(shape)) lights_.add_analytic(*shape.emitter, lights[kind], index, area, out_.analytic_bounds.back());
+    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
+    out_.shapes.push_back(s);
 }
 
 // Those with instances and something in them.
@@ -298,6 +308,7 @@ void Flattener::set_parameters() {
     p.max_depth = scene_.integrator.max_depth < 0 ? 0x7fffffffU : static_cast<std::uint32_t>(scene_.integrator.max_depth);
     p.rr_depth = static_cast<std::uint32_t>(std::max(scene_.integrator.rr_depth, 1));
     p.light_count = static_cast<std::uint32_t>(out_.lights.size());
+    p.finite_light_count = lights_.finite_count();
     p.triangle_count = static_cast<std::uint32_t>(out_.triangles.size());
 }
 

@@ -42,6 +42,7 @@ struct DeviceScene {
     std::vector<DeviceShape> shapes;
     std::vector<float> normals;
     std::vector<float> uvs;
+    std::vector<float> colors;
     std::vector<Analytic> analytics;
 
     // appearance
@@ -51,7 +52,8 @@ struct DeviceScene {
     std::vector<float> texels;
 
     // light
-    std::vector<Light> lights;
+    std::vector<Light> lights;      // with a tree: those with a place first
+    std::vector<LightNode> light_tree;  // none if one light, or none with a place, is all there is
     std::vector<Environment> environment;  // none or one
     std::vector<float> environment_texels;
     std::vector<AliasEntry> environment_alias;

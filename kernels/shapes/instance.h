@@ -26,6 +26,7 @@ INLINE Ray instance_ray(global const struct Instance *instances, uint index, con
     moved.dy = dy * shrink;
     moved.dz = dz * shrink;
     moved.limit = r->limit * length;
+    moved.from = HIT_NONE; // the triangle it leaves may stand in its way elsewhere: error bounds see to the rest
 #if HAS_MASKS
     moved.key ^= (index + 1u) * 0x9e3779b9u; // the instances of a shape are passed one by one
 #endif

@@ -27,6 +27,9 @@ typedef struct {
 #if HAS_UVS
     global const float *uvs; // 6 a triangle
 #endif
+#if HAS_VERTEX_COLORS
+    global const float *colors; // 9 a triangle
+#endif
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     uint triangle_count;
@@ -50,6 +53,13 @@ typedef struct {
 #define UVS_PARAMETER
 #define UVS_ARGUMENT
 #endif
+#if HAS_VERTEX_COLORS
+#define COLORS_PARAMETER , global const float *colors
+#define COLORS_ARGUMENT , colors
+#else
+#define COLORS_PARAMETER
+#define COLORS_ARGUMENT
+#endif
 #if HAS_ANALYTIC
 #define ANALYTIC_PARAMETER , global const struct Analytic *analytics
 #define ANALYTIC_ARGUMENT , analytics, parameters->triangle_count
@@ -69,10 +79,11 @@ typedef struct {
 #define SURFACE_PARAMETERS                                                                                  \
     global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
-        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER ANALYTIC_PARAMETER INSTANCES_PARAMETER
-#define SURFACE_VIEW \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT ANALYTIC_ARGUMENT \
-         INSTANCES_ARGUMENT}
+        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER \
+            INSTANCES_PARAMETER
+#define SURFACE_VIEW                                                                                               \
+    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT            \
+         ANALYTIC_ARGUMENT INSTANCES_ARGUMENT}
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -90,6 +101,9 @@ typedef struct {
 #if HAS_INSTANCES
     UInt instance;
 #endif
+#if HAS_LIGHT_TREE
+    UInt receiver;
+#endif
     Int live; // lanes that hold a path
 } TracedPath;
 
@@ -100,6 +114,9 @@ typedef struct {
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
     Float u, v;    // texture coordinates
+#if HAS_VERTEX_COLORS
+    Rgb color;
+#endif
     UInt shape;
     UInt primitive;
     UInt material; // WAVELOBE_NONE: black
@@ -126,6 +143,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #endif
 #if HAS_INSTANCES
     p.instance = SELECT(p.live, read_uint(q, PATH_INSTANCE, i), (UInt)INSTANCE_NONE);
+#endif
+#if HAS_LIGHT_TREE
+    p.receiver = read_uint(q, PATH_RECEIVER, i);
 #endif
     return p;
 }
@@ -183,18 +203,6 @@ INLINE Vec3 triangle_tangent(SurfaceView s, UInt first_uv, UInt triangle, Vec3 e
 }
 #endif
 
-// Turns the frame's tangent to `along` as far as the normal allows.
-INLINE Frame frame_along(Vec3 n, Vec3 along) {
-    Vec3 s = scale_add(n, -dot3(n, along), along);
-    Float square = length_squared(s);
-    Frame fallback = frame_of_normal(n);
-    Frame f;
-    f.n = n;
-    f.s = select3(square > 0.0f, scale(s, 1.0f / sqrt(square)), fallback.s);
-    f.t = cross3(n, f.s);
-    return f;
-}
-
 INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
     UInt word = block_word(slot);
     Vec3 a = block_vertex(s, word, 0u), b = block_vertex(s, word, 1u), c = block_vertex(s, word, 2u);
@@ -204,7 +212,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
     Vec3 n = out->normal;
-#if HAS_SMOOTH_NORMALS || HAS_UVS
+#if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
     UInt triangle = out->primitive - first_primitive;
 #endif
 #if HAS_SMOOTH_NORMALS
@@ -216,6 +224,17 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
                                    gather_vec3(s.normals + 6, at), wa, wb, wc);
         Float square = length_squared(shading);
         n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), n);
+    }
+#endif
+#if HAS_VERTEX_COLORS
+    UInt first_color = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_color);
+    Int colored = first_color != (UInt)WAVELOBE_NONE;
+    out->color = vec3_all(ONE);
+    if (any_lane(colored)) {
+        UInt at = SELECT(colored, first_color + triangle * 9u, (UInt)0u);
+        Rgb color = interpolate(gather_vec3(s.colors, at), gather_vec3(s.colors + 3, at), gather_vec3(s.colors + 6, at),
+                                wa, wb, wc);
+        out->color = select3(colored, color, out->color);
     }
 #endif
     out->u = wb;
@@ -246,6 +265,9 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->normal = select3(analytic, h.normal, out->normal);
     out->u = SELECT(analytic, h.u, out->u);
     out->v = SELECT(analytic, h.v, out->v);
+#if HAS_VERTEX_COLORS
+    out->color = select3(analytic, vec3_all(ONE), out->color);
+#endif
 #if HAS_ANISOTROPY
     Frame frame = frame_along(h.normal, h.tangent);
 #else

@@ -83,7 +83,6 @@ INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float
     return lane_bits8(enter <= leave);
 }
 
-#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
 
@@ -157,7 +156,7 @@ INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit)
 INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShear *shear, Hit *hit) {
     global const uchar *block = g.blocks + (size_t)index * sizeof(struct TriangleBlock);
     float8 t, u, v;
-    uint mask = intersect_triangle_block(block, shear, hit->t, &t, &u, &v);
+    uint mask = intersect_triangle_block(block, shear, r, hit->t, &t, &u, &v);
     if (LIKELY(mask == 0u)) return;
 #if HAS_MASKS
     mask = not_passed(g.opacity, block, mask, r, u, v);
@@ -336,11 +335,12 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
             continue;
         }
 #endif
-        global const uchar *block = g.blocks + (size_t)(current & ~BVH_LEAF) * sizeof(struct TriangleBlock);
+        uint block = current & ~BVH_LEAF;
+        global const uchar *triangles = g.blocks + (size_t)block * sizeof(struct TriangleBlock);
         float8 t, u, v;
-        uint mask = intersect_triangle_block(block, &shear, r->limit, &t, &u, &v);
+        uint mask = intersect_triangle_block(triangles, &shear, r, r->limit, &t, &u, &v);
 #if HAS_MASKS
-        if (UNLIKELY(mask)) mask = not_passed(g.opacity, block, mask, r, u, v);
+        if (UNLIKELY(mask)) mask = not_passed(g.opacity, triangles, mask, r, u, v);
 #endif
         if (UNLIKELY(mask)) return 1u;
         current = stack[--top];

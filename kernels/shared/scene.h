@@ -11,11 +11,12 @@ struct Shape {
     Uint32 first_primitive; // triangle id of its first triangle
     Uint32 first_normal;    // offset into `normals`, in floats, of its first triangle; WAVELOBE_NONE: faceted
     Uint32 first_uv;        // offset into `uvs`; WAVELOBE_NONE: barycentric coordinates serve
+    Uint32 first_color;     // offset into `colors`; WAVELOBE_NONE: white
     Uint32 first_light;     // light of its first triangle; WAVELOBE_NONE: does not emit
     Uint32 triangles_per_light; // 1, or 2 for a parallelogram lit as one
     Uint32 flags;           // SHAPE_x bits
 };
-WAVELOBE_CHECK_SIZE(Shape, 32);
+WAVELOBE_CHECK_SIZE(Shape, 36);
 
 // Classes of lobes that either side of it has, and whether it is a light.
 #define SHAPE_HAS_DELTA 1u
@@ -36,10 +37,11 @@ struct RenderParameters {
     Uint32 max_depth; // vertices a path may have; at least 1
     Uint32 rr_depth;  // Russian roulette from this many vertices on
     Uint32 light_count;
+    Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
     Uint32 few_triangle_count, few_vertex_count; // of scenes without a hierarchy
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 116);
+WAVELOBE_CHECK_SIZE(RenderParameters, 120);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

@@ -10,7 +10,8 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         Vec3 direction = read_vec3(rays, PATH_DIRECTION, i);
-        LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), direction, read_field(rays, PATH_T, i)
+        LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), direction, read_field(rays, PATH_T, i),
+                                     read_uint(rays, PATH_HIT, i)
                                      KEY_ARGUMENT(geometry, block, read_uint(rays, PATH_ID, i), direction));
         write_field(rays, PATH_T, i, hit.t);
         write_field(rays, PATH_U, i, hit.u);
@@ -23,7 +24,7 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
 INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_ID, i);
+        Ray r = slot_ray(geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
         Hit hit = trace_closest(geometry, &r);
         set_slot(rays, PATH_T, i, hit.t);
         set_slot(rays, PATH_U, i, hit.u);

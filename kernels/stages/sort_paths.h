@@ -77,6 +77,7 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int pass
     append_vec3(rays, PATH_ORIGIN, first,
                 offset_ray_origin(surface.position, surface.error, surface.normal, path.direction), bits);
     append_field(rays, PATH_T, first, (Float)INFINITY, bits);
+    append_uint(rays, PATH_HIT, first, surface.primitive, bits);
     append_field(rays, PATH_PDF, first, (Float)-1.0f, bits);
     return at;
 }

@@ -30,6 +30,10 @@ TEST(Materials, Defaults) {
     const auto plastic = model_of<Plastic>(R"(<bsdf type="plastic"/>)");
     EXPECT_FLOAT_EQ(plastic.eta, 1.49F / 1.000277F);
     EXPECT_FALSE(plastic.nonlinear);
+    const auto rough_plastic = model_of<RoughPlastic>(R"(<bsdf type="roughplastic"/>)");
+    EXPECT_FLOAT_EQ(rough_plastic.eta, 1.49F / 1.000277F);
+    EXPECT_EQ(rough_plastic.alpha, 0.1F);
+    EXPECT_EQ(rough_plastic.distribution, Distribution::beckmann);
     const auto phong = model_of<Phong>(R"(<bsdf type="phong"/>)");
     EXPECT_EQ(phong.diffuse_reflectance.value, Rgb(0.5F));
     EXPECT_EQ(phong.specular_reflectance.value, Rgb(0.2F));

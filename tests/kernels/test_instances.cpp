@@ -157,11 +157,15 @@ TEST_P(Instances, AnalyticShapesAreLeft) {
         }
         ASSERT_GT(next.size(), surface_batch / 4);
         bench.trace(next);
+        // Floats out there tell points of the ellipsoid's rim apart: its radius of curvature is well above their steps.
+        const glm::vec3 s = glm::abs(GetParam().scale);
+        const float least = std::min({s.x, s.y, s.z});
+        const bool resolved = 0.7F * least * least / std::max({s.x, s.y, s.z}) > 1e-6F * glm::length(GetParam().offset);
         for (std::size_t i = 0; i < next.size(); ++i) {
             const bool hit = bench.path(i).hit != HIT_NONE;
             if (kind == AnalyticShape::Kind::disk || cosine[i] > 0.0F) {
                 ASSERT_FALSE(hit) << "kind " << static_cast<int>(kind) << " ray " << i << " t " << bench.path(i).t;
-            } else if (kind == AnalyticShape::Kind::sphere && cosine[i] < -0.3F) {  // not through its very edge
+            } else if (kind == AnalyticShape::Kind::sphere && resolved && cosine[i] < -0.3F) {
                 ASSERT_TRUE(hit) << "ray " << i;
             }
         }

@@ -29,6 +29,7 @@ struct TestPath {
     std::uint32_t id = 0;
     std::uint32_t depth = 0;
     float eta = 1.0F;     // only in scenes with transmission
+    std::uint32_t receiver = 0xffffffffU;  // only in scenes with a light tree; by itself: both sides
     glm::vec3 origin{0};  // traced paths keep it only in scenes with analytic shapes
     std::uint32_t instance = INSTANCE_NONE;  // only in scenes with instances
 };
@@ -39,6 +40,7 @@ struct TestShadowRay {
     glm::vec3 contribution{1};
     std::uint32_t id = 0;
     glm::vec3 origin{0};
+    std::uint32_t from = HIT_NONE;
 };
 
 class StageBench {
@@ -104,6 +106,7 @@ public:
         set_bits(queue, layout_[path_id], slot, p.id);
         set_bits(queue, layout_[path_depth], slot, p.depth);
         set(queue, layout_[path_eta], slot, p.eta);
+        if (scene_.features.light_tree) set_bits(queue, layout_[path_receiver], slot, p.receiver);
         if (keeps_origin(queue)) set_vector(queue, layout_[path_origin], slot, p.origin);
         if (scene_.features.instances) set_bits(queue, layout_[path_instance], slot, p.instance);
     }
@@ -119,6 +122,7 @@ public:
                 get_bits(queue, layout_[path_id], slot),
                 get_bits(queue, layout_[path_depth], slot),
                 get(queue, layout_[path_eta], slot),
+                scene_.features.light_tree ? get_bits(queue, layout_[path_receiver], slot) : 0U,
                 keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0},
                 scene_.features.instances ? get_bits(queue, layout_[path_instance], slot) : INSTANCE_NONE};
     }
@@ -130,6 +134,7 @@ public:
             set_vector(QUEUE_SHADOW, layout_[shadow_contribution], i, rays[i].contribution);
             set_bits(QUEUE_SHADOW, layout_[shadow_id], i, rays[i].id);
             set_vector(QUEUE_SHADOW, layout_[shadow_origin], i, rays[i].origin);
+            set_bits(QUEUE_SHADOW, layout_[shadow_from], i, rays[i].from);
         }
         header().count[QUEUE_SHADOW] = static_cast<std::uint32_t>(rays.size());
     }
@@ -138,7 +143,8 @@ public:
         return {get(QUEUE_SHADOW, layout_[shadow_t], slot), get_vector(QUEUE_SHADOW, layout_[shadow_direction], slot),
                 get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot),
                 get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
-                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot)};
+                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot),
+                get_bits(QUEUE_SHADOW, layout_[shadow_from], slot)};
     }
 
     std::vector<std::uint32_t> ids(std::uint32_t queue) {
@@ -169,6 +175,7 @@ private:
         path_id,
         path_depth,
         path_eta,
+        path_receiver,
         path_origin,
         path_instance,
         shadow_t,
@@ -176,18 +183,18 @@ private:
         shadow_contribution,
         shadow_id,
         shadow_origin,
+        shadow_from,
         layout_size
     };
     static constexpr const char* layout_source = R"(
-#if !HAS_INSTANCES
-#define PATH_INSTANCE 0u // there is none
+#if !HAS_LIGHT_TREE
+#define PATH_RECEIVER 0u
 #endif
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
-                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_ORIGIN,
-                           PATH_INSTANCE, SHADOW_T,
-                           SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN};
+                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
+                           PATH_INSTANCE,                            SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";

@@ -1,4 +1,5 @@
 // The BSDF plugins.
+#include <algorithm>
 #include <array>
 
 #include "scene/conductors.h"
@@ -53,11 +54,14 @@ struct Roughness {
     Distribution distribution = Distribution::beckmann;
 };
 
+Distribution distribution(Query& query) {
+    query.boolean("sample_visible", true);
+    return query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
+}
+
 Roughness roughness(Query& query) {
     Roughness result;
-    result.distribution =
-        query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
-    query.boolean("sample_visible", true);
+    result.distribution = distribution(query);
     const bool two = query.has("alpha_u") || query.has("alpha_v");
     if (two && !(query.has("alpha_u") && query.has("alpha_v")))
         query.fault("only one of `alpha_u` and `alpha_v` is given", "give both, or `alpha` alone");
@@ -128,6 +132,21 @@ Bsdf read_plastic(Query& query) {
     return make(query, Plastic{eta, diffuse, specular, query.boolean("nonlinear", false)}, Sides::front);
 }
 
+Bsdf read_rough_plastic(Query& query) {
+    RoughPlastic m;
+    m.eta = relative_index(query, "polypropylene");
+    if (m.eta == 1.0F)
+        query.fault("the indices of refraction inside and outside are equal", "let `int_ior` and `ext_ior` differ");
+    m.diffuse_reflectance = reflectance(query, "diffuse_reflectance", 0.5);
+    m.specular_reflectance = reflectance(query, "specular_reflectance", 1.0);
+    m.nonlinear = query.boolean("nonlinear", false);
+    m.distribution = distribution(query);
+    for (const char* name : {"alpha_u", "alpha_v"})
+        if (query.has(name)) query.fault_at(name, "rough plastic is isotropic", "give `alpha` alone");
+    m.alpha = static_cast<float>(std::max(query.real("alpha", 0.1, not_negative), 1e-4));
+    return make(query, m, Sides::front);
+}
+
 // A plugin of Mitsuba 0.x, whose spelling of the names is accepted next to today's.
 Bsdf read_phong(Query& query) {
     const auto either = [&](const std::string& name, const std::string& old_name, double otherwise) {
@@ -192,7 +211,7 @@ struct Plugin {
     const char* name;
     Bsdf (*read)(Query&);
 };
-constexpr std::array<Plugin, 11> plugins{{
+constexpr std::array<Plugin, 12> plugins{{
     {"conductor", read_conductor},
     {"dielectric", read_dielectric},
     {"diffuse", read_diffuse},
@@ -202,6 +221,7 @@ constexpr std::array<Plugin, 11> plugins{{
     {"plastic", read_plastic},
     {"roughconductor", read_rough_conductor},
     {"roughdielectric", read_rough_dielectric},
+    {"roughplastic", read_rough_plastic},
     {"thindielectric", read_thin_dielectric},
     {"twosided", read_twosided},
 }};
