@@ -26,7 +26,10 @@ struct BuildNode {
 
 struct Source {
     std::span<const TriangleVertices> triangles;
+    std::size_t analytic_count = 0;
+    std::span<const Bounds> instance_bounds{};
     bool is_triangle(std::uint32_t id) const { return id < triangles.size(); }
+    bool is_instance(std::uint32_t id) const { return id >= triangles.size() + analytic_count; }
 };
 
 BuildNode* allocate_node(RTCThreadLocalAllocator allocator, unsigned count, bool leaf) {
@@ -150,20 +153,29 @@ private:
         n.child[i] = reference;
     }
 
-    // A leaf holds triangles or analytic shapes; one that got both becomes a node of two leaves.
+    // A leaf holds triangles or analytic shapes. One that got several kinds becomes a node of leaves; so does one of
+    // instances, each a leaf of its own.
     std::uint32_t encode_leaf(const BuildNode* leaf, const Bounds& bounds, int level) {
         if (leaf->count > width) throw std::runtime_error("the hierarchy builder made a leaf of " + std::to_string(leaf->count));
         std::vector<std::uint32_t> triangles;
         std::vector<std::uint32_t> analytics;
+        std::vector<std::uint32_t> instances;
         for (unsigned i = 0; i < leaf->count; ++i) {
-            (source_.is_triangle(leaf->primitive[i]) ? triangles : analytics).push_back(leaf->primitive[i]);
+            const std::uint32_t id = leaf->primitive[i];
+            (source_.is_triangle(id) ? triangles : source_.is_instance(id) ? instances : analytics).push_back(id);
         }
-        if (analytics.empty()) return add_block(triangles);
-        if (triangles.empty()) return add_analytics(analytics);
+        if (analytics.empty() && instances.empty()) return add_block(triangles);
+        if (triangles.empty() && instances.empty()) return add_analytics(analytics);
         bvh_.depth = std::max(bvh_.depth, level + 1);
         const std::uint32_t node = new_node();
-        set_child(node, 0, bounds, add_block(triangles));
-        set_child(node, 1, bounds, add_analytics(analytics));
+        unsigned next = 0;
+        if (!triangles.empty()) set_child(node, next++, bounds, add_block(triangles));
+        if (!analytics.empty()) set_child(node, next++, bounds, add_analytics(analytics));
+        const std::size_t first = source_.triangles.size() + source_.analytic_count;
+        for (const std::uint32_t id : instances) {
+            const auto instance = static_cast<std::uint32_t>(id - first);
+            set_child(node, next++, source_.instance_bounds[instance], BVH_LEAF | BVH_INSTANCE | instance);
+        }
         return node;
     }
 
@@ -201,7 +213,7 @@ RTCBuildPrimitive build_primitive(const Bounds& b, std::size_t id) {
 
 std::vector<RTCBuildPrimitive> build_primitives(const Source& source, std::span<const Bounds> analytic_bounds,
                                                 BvhQuality quality) {
-    const std::size_t count = source.triangles.size() + analytic_bounds.size();
+    const std::size_t count = source.triangles.size() + analytic_bounds.size() + source.instance_bounds.size();
     // Spatial splits need room for the references they add.
     std::vector<RTCBuildPrimitive> primitives(quality == BvhQuality::best ? 2 * count : count);
     std::size_t next = 0;
@@ -211,9 +223,11 @@ std::vector<RTCBuildPrimitive> build_primitives(const Source& source, std::span<
         primitives[next] = build_primitive(b, next);
         ++next;
     }
-    for (const Bounds& b : analytic_bounds) {
-        primitives[next] = build_primitive(b, next);
-        ++next;
+    for (const std::span<const Bounds> boxes : {analytic_bounds, source.instance_bounds}) {
+        for (const Bounds& b : boxes) {
+            primitives[next] = build_primitive(b, next);
+            ++next;
+        }
     }
     return primitives;
 }
@@ -228,11 +242,12 @@ struct ReleaseBvh {
 }  // namespace
 
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
-              int threads) {
+              int threads, std::span<const Bounds> instance_bounds) {
     const auto start = std::chrono::steady_clock::now();
-    Source source{triangles};
+    Source source{triangles, analytic_bounds.size(), instance_bounds};
+    const std::size_t count = triangles.size() + analytic_bounds.size() + instance_bounds.size();
     Encoder encoder(source);
-    if (triangles.empty() && analytic_bounds.empty()) {
+    if (count == 0) {
         encoder.encode_root(nullptr);
         return encoder.take();
     }
@@ -253,7 +268,7 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
     arguments.maxLeafSize = width;
     arguments.bvh = tree.get();
     arguments.primitives = primitives.data();
-    arguments.primitiveCount = triangles.size() + analytic_bounds.size();
+    arguments.primitiveCount = count;
     arguments.primitiveArrayCapacity = primitives.size();
     arguments.createNode = create_node;
     arguments.setNodeChildren = set_children;
@@ -267,6 +282,26 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
     Bvh bvh = encoder.take();
     bvh.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return bvh;
+}
+
+std::uint32_t append_bvh(Bvh& all, const Bvh& group, std::uint32_t first_triangle, std::uint32_t first_analytic) {
+    const auto root = static_cast<std::uint32_t>(all.nodes.size());
+    const auto first_block = static_cast<std::uint32_t>(all.blocks.size());
+    const auto first_entry = static_cast<std::uint32_t>(all.analytic_order.size());
+    for (BvhNode node : group.nodes) {
+        for (std::uint32_t& child : node.child) {
+            if (child == BVH_EMPTY) continue;
+            if ((child & BVH_LEAF) == 0) child += root;
+            else child += (child & BVH_ANALYTIC) != 0 ? first_entry << 4U : first_block;
+        }
+        all.nodes.push_back(node);
+    }
+    for (TriangleBlock block : group.blocks) {
+        for (std::uint32_t& primitive : block.primitive) primitive += first_triangle;
+        all.blocks.push_back(block);
+    }
+    for (const std::uint32_t entry : group.analytic_order) all.analytic_order.push_back(entry + first_analytic);
+    return root;
 }
 
 }  // namespace wavelobe

@@ -38,6 +38,9 @@ enum class BvhQuality { fast, best };
 // Primitive ids in leaves index `triangles`. `analytic_bounds` must contain their shapes with room for rounding.
 // Throws std::runtime_error if the builder fails.
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
-              int threads);
+              int threads, std::span<const Bounds> instance_bounds = {});
+
+// Adds the hierarchy of a group, whose triangles and analytic shapes are numbered from these on, and returns its root.
+std::uint32_t append_bvh(Bvh& all, const Bvh& group, std::uint32_t first_triangle, std::uint32_t first_analytic);
 
 }  // namespace wavelobe

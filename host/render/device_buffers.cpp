@@ -11,6 +11,8 @@ constexpr std::size_t best_quality_triangles = 400000;
 // Measured on scenes of 100 thousand to 10 million triangles; used before the hierarchy exists.
 constexpr std::uint64_t hierarchy_bytes_per_primitive = 110;
 
+constexpr std::uint64_t hierarchy_bytes_per_instance = 50;
+
 template <class T>
 std::uint64_t bytes_of(const std::vector<T>& values) {
     return values.size() * sizeof(T);
@@ -30,9 +32,27 @@ void mark_masked(Bvh& bvh, const DeviceScene& scene) {
 
 }  // namespace
 
-Bvh build_scene_bvh(const DeviceScene& scene, int threads) {
+Bvh build_scene_bvh(DeviceScene& scene, int threads) {
     const BvhQuality quality = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
-    Bvh bvh = build_bvh(scene.triangles, scene.analytic_bounds, quality, threads);
+    const std::span<const TriangleVertices> triangles = scene.triangles;
+    const std::span<const Bounds> analytics = scene.analytic_bounds;
+    const auto build = [&](const GeometryRange& range, BvhQuality wanted, std::span<const Bounds> instances) {
+        return build_bvh(triangles.subspan(range.first_triangle, range.triangle_count),
+                         analytics.subspan(range.first_analytic, range.analytic_count), wanted, threads, instances);
+    };
+    // Splits of instances would only multiply them.
+    Bvh bvh = build(scene.world, scene.instances.empty() ? quality : BvhQuality::fast, scene.instance_bounds);
+    std::vector<std::uint32_t> roots;
+    int depth = 0;
+    for (const GeometryRange& group : scene.groups) {
+        const Bvh part = build(group, quality, {});
+        roots.push_back(append_bvh(bvh, part, static_cast<std::uint32_t>(group.first_triangle),
+                                   static_cast<std::uint32_t>(group.first_analytic)));
+        depth = std::max(depth, part.depth);
+        bvh.build_seconds += part.build_seconds;
+    }
+    bvh.depth += depth;
+    for (DeviceInstance& instance : scene.instances) instance.root = roots[instance.root];
     if (scene.features.masks) mark_masked(bvh, scene);
     // Stages read block 0 in lanes that hit no triangle.
     if (bvh.blocks.empty()) bvh.blocks.emplace_back();
@@ -44,7 +64,8 @@ std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
         std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height * sizeof(FilmPixel);
     return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
            bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.colors) +
-           bytes_of(scene.analytics) + bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
+           bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
+           bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
            bytes_of(scene.texels) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
            bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
 }
@@ -75,6 +96,7 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("uvs", scene.uvs);
     add("colors", scene.colors);
     add("analytics", scene.analytics);
+    add("instances", scene.instances);
     add("textures", scene.textures);
     add("texels", scene.texels.empty() && !scene.textures.empty() ? std::vector<float>(1) : scene.texels);
     add("lights", scene.lights);

@@ -10,7 +10,8 @@
 
 namespace wavelobe {
 
-Bvh build_scene_bvh(const DeviceScene& scene, int threads);
+// Writes the roots of the groups into the instances.
+Bvh build_scene_bvh(DeviceScene& scene, int threads);
 
 // What the buffers of a scene will take, the hierarchy estimated from the number of primitives.
 std::uint64_t estimate_device_bytes(const DeviceScene& scene);

@@ -77,6 +77,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_UVS", f.uvs);
     out.define("HAS_VERTEX_COLORS", f.vertex_colors);
     out.define("HAS_ANALYTIC", f.analytic);
+    out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TRANSMISSION", f.transmission);
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
@@ -179,6 +180,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(uvs, "uvs");
     add(vertex_colors, "vertex_colors");
     add(analytic, "analytic_shapes");
+    add(instances, "instances");
     add(anisotropy, "anisotropy");
     add(transmission, "transmission");
     add(unlike_sides, "unlike_sides");
@@ -243,7 +245,7 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0);
+    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.instances ? 1 : 0);
     const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;

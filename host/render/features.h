@@ -34,6 +34,7 @@ struct FeatureSet {
     bool uvs = false;
     bool vertex_colors = false;
     bool analytic = false;
+    bool instances = false;
     bool anisotropy = false;
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material

@@ -1,7 +1,9 @@
 #include "render/flatten.h"
 
 #include <cmath>
+#include <span>
 
+#include "render/flatten_instances.h"
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "render/presence.h"
@@ -11,14 +13,23 @@
 namespace wavelobe {
 namespace {
 
-Bounds bounds_of_scene(const DeviceScene& scene) {
+Bounds bounds_of_range(const DeviceScene& scene, const GeometryRange& range) {
     Bounds b;
-    for (const TriangleVertices& t : scene.triangles) {
+    for (const TriangleVertices& t : std::span(scene.triangles).subspan(range.first_triangle, range.triangle_count)) {
         for (const glm::vec3& p : t) b.extend(p);
     }
-    for (const Bounds& a : scene.analytic_bounds) {
+    for (const Bounds& a : std::span(scene.analytic_bounds).subspan(range.first_analytic, range.analytic_count)) {
         b.extend(a.lower);
         b.extend(a.upper);
+    }
+    return b;
+}
+
+Bounds bounds_of_scene(const DeviceScene& scene) {
+    Bounds b = bounds_of_range(scene, scene.world);
+    for (const Bounds& i : scene.instance_bounds) {
+        b.extend(i.lower);
+        b.extend(i.upper);
     }
     return b;
 }
@@ -28,15 +39,14 @@ public:
     explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), lights_(materials_, out_) {}
 
     DeviceScene run() {
-        for (const Shape& shape : scene_.shapes) {
-            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-            if (mesh != nullptr && is_there(shape)) add_mesh(shape, *mesh);
-        }
-        // Analytic shapes follow all triangles in the numbering of primitives.
-        for (const Shape& shape : scene_.shapes) {
-            const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry);
-            if (analytic != nullptr && is_there(shape)) add_analytic(shape, *analytic);
-        }
+        const std::vector<std::size_t> groups = groups_in_use();
+        out_.groups.resize(groups.size());
+        // All triangles, then all analytic shapes in the numbering of primitives; in both the world's before the groups'.
+        add_triangles(scene_.shapes, out_.world);
+        for (std::size_t i = 0; i < groups.size(); ++i) add_triangles(scene_.groups[groups[i]].shapes, out_.groups[i]);
+        add_analytics(scene_.shapes, out_.world);
+        for (std::size_t i = 0; i < groups.size(); ++i) add_analytics(scene_.groups[groups[i]].shapes, out_.groups[i]);
+        add_instances(groups);
         const Bounds bounds = bounds_of_scene(out_);
         const double radius = out_.primitive_shapes.empty() ? 1.0 : 0.5 * glm::length(glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
         // Lights with a place go before those at infinity.
@@ -53,6 +63,27 @@ public:
     }
 
 private:
+    void add_triangles(const std::vector<Shape>& shapes, GeometryRange& range) {
+        range.first_triangle = out_.triangles.size();
+        for (const Shape& shape : shapes) {
+            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+            if (mesh != nullptr && is_there(shape)) add_mesh(shape, *mesh);
+        }
+        range.triangle_count = out_.triangles.size() - range.first_triangle;
+    }
+
+    void add_analytics(const std::vector<Shape>& shapes, GeometryRange& range) {
+        range.first_analytic = out_.analytics.size();
+        for (const Shape& shape : shapes) {
+            const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry);
+            if (analytic != nullptr && is_there(shape)) add_analytic(shape, *analytic);
+        }
+        range.analytic_count = out_.analytics.size() - range.first_analytic;
+    }
+
+    std::vector<std::size_t> groups_in_use() const;
+    void add_instances(const std::vector<std::size_t>& groups);
+
     void finish_features() {
         FeatureSet& f = out_.features;
         f.textures = !out_.textures.empty();
@@ -220,6 +251,40 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     if (emits(shape)) lights_.add_analytic(*shape.emitter, lights[kind], index, area, out_.analytic_bounds.back());
     out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
     out_.shapes.push_back(s);
+}
+
+// Those with instances and something in them.
+std::vector<std::size_t> Flattener::groups_in_use() const {
+    std::vector<bool> used(scene_.groups.size());
+    for (const Instance& instance : scene_.instances) used.at(static_cast<std::size_t>(instance.group)) = true;
+    std::vector<std::size_t> groups;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        if (!used[i]) continue;
+        groups.push_back(i);
+        for (const Shape& shape : scene_.groups[i].shapes) {
+            if (!emits(shape)) continue;
+            throw InputError(Fault{"", 0, 0, shape.name, "an instanced shape emits light; only shapes outside of groups can",
+                                   "place the emitter without instancing"});
+        }
+    }
+    return groups;
+}
+
+void Flattener::add_instances(const std::vector<std::size_t>& groups) {
+    std::vector<Bounds> bounds;
+    std::map<std::size_t, std::uint32_t> number;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        number[groups[i]] = static_cast<std::uint32_t>(i);
+        bounds.push_back(bounds_of_range(out_, out_.groups[i]));
+    }
+    for (const Instance& instance : scene_.instances) {
+        const auto found = number.find(static_cast<std::size_t>(instance.group));
+        if (found == number.end() || bounds[found->second].lower.x > bounds[found->second].upper.x) continue;
+        out_.instances.push_back(device_instance(instance.to_world, found->second));
+        out_.instance_bounds.push_back(instance_bounds(instance.to_world, bounds[found->second]));
+    }
+    out_.features.instances = !out_.instances.empty();
+    if (out_.instances.empty()) out_.groups = {};
 }
 
 void Flattener::set_parameters() {

@@ -17,6 +17,15 @@ using DeviceMaterial = ::Material;
 using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
 using DeviceOpacity = ::Opacity;
+using DeviceInstance = ::Instance;
+
+// What a hierarchy is built over: consecutive triangles and analytic shapes.
+struct GeometryRange {
+    std::size_t first_triangle = 0;
+    std::size_t triangle_count = 0;
+    std::size_t first_analytic = 0;
+    std::size_t analytic_count = 0;
+};
 
 struct DeviceScene {
     FeatureSet features;
@@ -25,6 +34,10 @@ struct DeviceScene {
     // surfaces
     std::vector<TriangleVertices> triangles;  // for the hierarchy; released once it is built
     std::vector<Bounds> analytic_bounds;
+    GeometryRange world;                // what is not in a group
+    std::vector<GeometryRange> groups;  // those with instances
+    std::vector<DeviceInstance> instances;  // `root` is the group's number until the hierarchies are built
+    std::vector<Bounds> instance_bounds;
     std::vector<std::uint32_t> primitive_shapes;
     std::vector<DeviceShape> shapes;
     std::vector<float> normals;

@@ -27,11 +27,11 @@ SamplePlan sample_plan(const RenderSettings& settings) {
             .target_error = settings.target_error};
 }
 
-// Entries for a hierarchy of `depth` levels: seven siblings a level and the sentinel. In steps, so that most scenes share
+// Entries for a hierarchy of `depth` levels: seven siblings a level, the sentinel and the way back from an instance. In steps, so that most scenes share
 // their compiled kernels.
 int traversal_stack(int depth) {
     constexpr int step = 64;
-    return (7 * depth + 1 + step - 1) / step * step;
+    return (7 * depth + 2 + step - 1) / step * step;
 }
 
 int slots_of(const RenderSettings& settings) {
@@ -95,7 +95,7 @@ void Renderer::State::build_geometry() {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
-    const FewTriangleSet few = find_few_triangles(bvh);
+    const FewTriangleSet few = scene_data.features.instances ? FewTriangleSet{} : find_few_triangles(bvh);
     scene_data.features.few_triangles = !few.triangles.empty();
     scene_data.parameters.few_triangle_count = static_cast<std::uint32_t>(few.triangles.size());
     scene_data.parameters.few_vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);

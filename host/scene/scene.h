@@ -192,6 +192,19 @@ struct Shape {
     std::string name;
 };
 
+// Shapes that stand in several places, stored once; "world" in their geometry is the group's own space. None of them emits,
+// and groups do not nest.
+struct ShapeGroup {
+    std::vector<Shape> shapes;
+    std::string name;
+};
+
+// A group in one place: any invertible affine map. Normals stay on their side of the surface, mirrored or not.
+struct Instance {
+    int group = 0;  // index into Scene::groups
+    glm::mat4 to_world{1.0F};
+};
+
 // ---- emitters without a shape ---------------------------------------------------------------------
 
 struct ConstantEmitter {
@@ -263,6 +276,8 @@ struct Integrator {
 struct Scene {
     std::vector<Material> materials;
     std::vector<Shape> shapes;
+    std::vector<ShapeGroup> groups;
+    std::vector<Instance> instances;
     std::vector<Emitter> emitters;
     PerspectiveCamera camera;
     Film film;

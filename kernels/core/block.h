@@ -21,12 +21,16 @@
 #define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette
 #if HAS_LIGHT_TREE
 #define PATH_RECEIVER 14u // code of the normal where light was last sampled (lights/light_tree.h)
-#define PATH_ORIGIN 15u   // 3
-#define PATH_FIELDS (RAY_FIELDS + 1u)
+#define PATH_INSTANCE 15u // of the hit, or INSTANCE_NONE; in scenes with instances
 #else
-#define PATH_ORIGIN 14u   // 3
-#define PATH_FIELDS RAY_FIELDS
+#define PATH_INSTANCE 14u
 #endif
+#if HAS_INSTANCES
+#define PATH_ORIGIN (PATH_INSTANCE + 1u) // 3
+#else
+#define PATH_ORIGIN PATH_INSTANCE
+#endif
+#define PATH_FIELDS (PATH_ORIGIN + 3u)
 
 #if HAS_ANALYTIC
 #define TRACED_FIELDS PATH_FIELDS

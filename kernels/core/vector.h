@@ -63,6 +63,18 @@ INLINE Frame frame_of_normal(Vec3 n) {
     return f;
 }
 
+// Turns the frame's tangent to `along` as far as the normal allows.
+INLINE Frame frame_along(Vec3 n, Vec3 along) {
+    Vec3 s = scale_add(n, -dot3(n, along), along);
+    Float square = length_squared(s);
+    Frame fallback = frame_of_normal(n);
+    Frame f;
+    f.n = n;
+    f.s = select3(square > 0.0f, scale(s, 1.0f / sqrt(square)), fallback.s);
+    f.t = cross3(n, f.s);
+    return f;
+}
+
 INLINE Vec3 to_local(Frame f, Vec3 v) { return vec3(dot3(v, f.s), dot3(v, f.t), dot3(v, f.n)); }
 INLINE Vec3 to_world(Frame f, Vec3 v) { return scale_add(f.s, v.x, scale_add(f.t, v.y, scale(f.n, v.z))); }
 

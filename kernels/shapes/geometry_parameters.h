@@ -34,12 +34,15 @@ typedef FewTriangles Geometry;
 #include "shapes/traversal.h"
 
 #if HAS_ANALYTIC
-#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes, global const uint *analytic_order OPACITY_PARAMETER
-#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks, analytics, analytic_order OPACITY_ARGUMENT}
+#define ANALYTIC_ORDER_PARAMETER , global const uint *analytic_order
+#define ANALYTIC_ORDER_ARGUMENT , analytics, analytic_order
 #else
-#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes OPACITY_PARAMETER
-#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks OPACITY_ARGUMENT}
+#define ANALYTIC_ORDER_PARAMETER
+#define ANALYTIC_ORDER_ARGUMENT
 #endif
+#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes ANALYTIC_ORDER_PARAMETER OPACITY_PARAMETER
+#define GEOMETRY_VIEW \
+    {bvh_nodes, (global const uchar *)triangle_blocks ANALYTIC_ORDER_ARGUMENT OPACITY_ARGUMENT INSTANCES_ARGUMENT}
 
 #if LANES == 1
 #define FIRST_LANE(v) (v)

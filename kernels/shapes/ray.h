@@ -20,6 +20,9 @@ typedef struct {
     float t;
     float u, v;    // barycentric weights of the second and third vertex
     uint primitive; // HIT_NONE, a triangle slot, or HIT_ANALYTIC | index
+#if HAS_INSTANCES
+    uint instance; // in which the primitive was hit, or INSTANCE_NONE
+#endif
 } Hit;
 
 // Numbers of triangles from what blocks hold of them.

@@ -11,6 +11,9 @@
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
+#if HAS_INSTANCES
+#include "shapes/instance.h"
+#endif
 
 // The buffers that describe surfaces. Kernels take SURFACE_PARAMETERS and write SURFACE_VIEW.
 typedef struct {
@@ -30,6 +33,9 @@ typedef struct {
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     uint triangle_count;
+#endif
+#if HAS_INSTANCES
+    global const struct Instance *instances;
 #endif
 } SurfaceView;
 
@@ -62,12 +68,22 @@ typedef struct {
 #define ANALYTIC_ARGUMENT
 #endif
 
+#if HAS_INSTANCES
+#define INSTANCES_PARAMETER , global const struct Instance *instances
+#define INSTANCES_ARGUMENT , instances
+#else
+#define INSTANCES_PARAMETER
+#define INSTANCES_ARGUMENT
+#endif
+
 #define SURFACE_PARAMETERS                                                                                  \
     global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
-        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER
-#define SURFACE_VIEW \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT ANALYTIC_ARGUMENT}
+        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER \
+            INSTANCES_PARAMETER
+#define SURFACE_VIEW                                                                                               \
+    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT            \
+         ANALYTIC_ARGUMENT INSTANCES_ARGUMENT}
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -81,6 +97,9 @@ typedef struct {
 #endif
 #if HAS_TRANSMISSION
     Float eta;
+#endif
+#if HAS_INSTANCES
+    UInt instance;
 #endif
 #if HAS_LIGHT_TREE
     UInt receiver;
@@ -121,6 +140,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #endif
 #if HAS_TRANSMISSION
     p.eta = read_field(q, PATH_ETA, i);
+#endif
+#if HAS_INSTANCES
+    p.instance = SELECT(p.live, read_uint(q, PATH_INSTANCE, i), (UInt)INSTANCE_NONE);
 #endif
 #if HAS_LIGHT_TREE
     p.receiver = read_uint(q, PATH_RECEIVER, i);
@@ -181,18 +203,6 @@ INLINE Vec3 triangle_tangent(SurfaceView s, UInt first_uv, UInt triangle, Vec3 e
 }
 #endif
 
-// Turns the frame's tangent to `along` as far as the normal allows.
-INLINE Frame frame_along(Vec3 n, Vec3 along) {
-    Vec3 s = scale_add(n, -dot3(n, along), along);
-    Float square = length_squared(s);
-    Frame fallback = frame_of_normal(n);
-    Frame f;
-    f.n = n;
-    f.s = select3(square > 0.0f, scale(s, 1.0f / sqrt(square)), fallback.s);
-    f.t = cross3(n, f.s);
-    return f;
-}
-
 INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
     UInt word = block_word(slot);
     Vec3 a = block_vertex(s, word, 0u), b = block_vertex(s, word, 1u), c = block_vertex(s, word, 2u);
@@ -243,7 +253,13 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
 #if HAS_ANALYTIC
 INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surface *out) {
     UInt index = SELECT(analytic, p->hit & (UInt)~HIT_ANALYTIC, (UInt)0u);
-    AnalyticHit h = analytic_hit(s.analytics, index, p->origin, p->direction, p->t);
+    Vec3 origin = p->origin, direction = p->direction;
+#if HAS_INSTANCES
+    InstanceMap m = instance_map(s.instances, p->instance);
+    origin = select3(m.placed, point_to_instance(&m, origin), origin);
+    direction = select3(m.placed, vector_to_instance(&m, direction), direction);
+#endif
+    AnalyticHit h = analytic_hit(s.analytics, index, origin, direction, p->t);
     out->position = select3(analytic, h.position, out->position);
     out->error = select3(analytic, h.error, out->error);
     out->normal = select3(analytic, h.normal, out->normal);
@@ -260,6 +276,29 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->frame.s = select3(analytic, frame.s, out->frame.s);
     out->frame.t = select3(analytic, frame.t, out->frame.t);
     out->frame.n = select3(analytic, frame.n, out->frame.n);
+}
+#endif
+
+#if HAS_INSTANCES
+// From the space of a group to the world.
+INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
+    InstanceMap m = instance_map(s.instances, instance);
+    if (!any_lane(m.placed)) return;
+    Vec3 error = out->error;
+    Vec3 position = instance_point(&m, out->position, &error);
+    Vec3 normal = normalize_any_scale(instance_normal(&m, out->normal));
+    Vec3 n = normalize_any_scale(instance_normal(&m, out->frame.n));
+#if HAS_ANISOTROPY
+    Frame frame = frame_along(n, normalize_any_scale(instance_vector(&m, out->frame.s)));
+#else
+    Frame frame = frame_of_normal(n);
+#endif
+    out->position = select3(m.placed, position, out->position);
+    out->error = select3(m.placed, error, out->error);
+    out->normal = select3(m.placed, normal, out->normal);
+    out->frame.s = select3(m.placed, frame.s, out->frame.s);
+    out->frame.t = select3(m.placed, frame.t, out->frame.t);
+    out->frame.n = select3(m.placed, frame.n, out->frame.n);
 }
 #endif
 
@@ -297,6 +336,9 @@ INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
     if (any_lane(analytic)) load_analytic(s, p, analytic, &out);
 #else
     load_triangle(s, p, p->hit, first_primitive, &out);
+#endif
+#if HAS_INSTANCES
+    place_surface(s, p->instance, &out);
 #endif
     choose_side(s, p, &out);
     return out;

@@ -5,7 +5,10 @@
 // Boxes are widened on their far side so that a ray that grazes them is never lost to rounding (Ize 2013, "Robust BVH Ray
 // Traversal").
 //
-// Wants BVH_STACK: entries enough for the deepest path, 7 a level and a sentinel.
+// An instance is a leaf: the ray goes on in the space of its group, from the root of the group's hierarchy on, and comes
+// back where the stack says so.
+//
+// Wants BVH_STACK: entries enough for the deepest path, 7 a level and a sentinel, and one where instances are.
 #ifndef WAVELOBE_SHAPES_TRAVERSAL_H
 #define WAVELOBE_SHAPES_TRAVERSAL_H
 
@@ -17,6 +20,9 @@
 #if HAS_MASKS
 #include "shapes/masks.h"
 #endif
+#if HAS_INSTANCES
+#include "shapes/instance.h"
+#endif
 
 typedef struct {
     global const uchar *nodes;  // BvhNode
@@ -27,6 +33,9 @@ typedef struct {
 #endif
 #if HAS_OPACITY
     OpacityView opacity;
+#endif
+#if HAS_INSTANCES
+    global const struct Instance *instances;
 #endif
 } Geometry;
 
@@ -168,16 +177,39 @@ INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShea
     hit->primitive = index * BVH_WIDTH + nearest;
 }
 
+#if HAS_INSTANCES
+// Turns the traversal to the space of an instance; 0 if the ray gets lost on the way.
+INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, float *stretch, BoxTest *box,
+                          RayShear *shear) {
+    *inner = instance_ray(g.instances, index, world, stretch);
+    *box = box_test(inner);
+    *shear = ray_shear(inner);
+    return is_finite_ray(inner);
+}
+#endif
+
 // The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
 INLINE Hit trace_closest(Geometry g, const Ray *r) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
-    Hit hit = {r->limit, 0.0f, 0.0f, HIT_NONE};
+    Hit hit = {
+        r->limit, 0.0f, 0.0f, HIT_NONE,
+#if HAS_INSTANCES
+        INSTANCE_NONE,
+#endif
+    };
     if (UNLIKELY(!(r->limit > 0.0f) || !is_finite_ray(r))) return hit; // also a limit that is not a number
     // Every hit has t > 0, so that the sentinel's distance of 0 is below any limit and it is always popped last.
     ulong stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u, current = 0u;
+#if HAS_INSTANCES
+    const Ray *world = r;
+    Ray inner;
+    uint instance = INSTANCE_NONE;
+    float found = hit.t; // the nearest hit of which it is known in what instance it is
+    float outside = hit.t, entered = hit.t, stretch; // the limit before the instance, the same in its space
+#endif
     for (;;) {
         while (!(current & BVH_LEAF)) {
             global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
@@ -192,15 +224,40 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
             goto pop;
         }
 #endif
-        {
-            closest_in_block(g, current & ~BVH_LEAF, r, &shear, &hit);
+#if HAS_INSTANCES
+        if (current & BVH_INSTANCE) {
+            instance = current & ~(BVH_LEAF | BVH_INSTANCE);
+            if (!enter_instance(g, instance, world, &inner, &stretch, &box, &shear)) goto leave;
+            r = &inner;
+            outside = hit.t;
+            hit.t = entered = found = outside * stretch;
+            stack[top++] = BVH_RETURN;
+            current = g.instances[instance].root;
+            continue;
         }
+#endif
+        closest_in_block(g, current & ~BVH_LEAF, r, &shear, &hit);
     pop:;
+#if HAS_INSTANCES
+        if (hit.t < found) hit.instance = instance;
+        found = hit.t;
+#endif
         ulong limit_key = (ulong)as_uint(hit.t) << 32, key;
         do key = stack[--top];
         while (UNLIKELY(key >= limit_key));
         current = (uint)key;
         if (current == BVH_EMPTY) return hit;
+#if HAS_INSTANCES
+        if (current == BVH_RETURN) {
+            hit.t = found = hit.t < entered ? min(hit.t / stretch, outside) : outside;
+        leave:
+            r = world;
+            instance = INSTANCE_NONE;
+            box = box_test(r);
+            shear = ray_shear(r);
+            goto pop;
+        }
+#endif
     }
 }
 
@@ -227,6 +284,11 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
     uint stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u, current = 0u;
+#if HAS_INSTANCES
+    const Ray *world = r;
+    Ray inner;
+    float stretch;
+#endif
     for (;;) {
         while (!(current & BVH_LEAF)) {
             global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
@@ -246,10 +308,30 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
             }
         }
         if (current == BVH_EMPTY) return 0u;
+#if HAS_INSTANCES
+        if (current == BVH_RETURN) {
+        leave:
+            r = world;
+            box = box_test(r);
+            shear = ray_shear(r);
+            current = stack[--top];
+            continue;
+        }
+#endif
 #if HAS_ANALYTIC
         if (current & BVH_ANALYTIC) {
             if (any_analytic(g, current, r)) return 1u;
             current = stack[--top];
+            continue;
+        }
+#endif
+#if HAS_INSTANCES
+        if (current & BVH_INSTANCE) {
+            uint instance = current & ~(BVH_LEAF | BVH_INSTANCE);
+            if (!enter_instance(g, instance, world, &inner, &stretch, &box, &shear)) goto leave;
+            r = &inner;
+            stack[top++] = BVH_RETURN;
+            current = g.instances[instance].root;
             continue;
         }
 #endif

@@ -7,9 +7,12 @@
 #define BVH_WIDTH 8u
 
 // A reference to a child: an inner node's index, or with BVH_LEAF set a block of triangles (its index), or with both bits
-// a run of analytic shapes: (first entry in the analytic order) * 16 + count.
+// a run of analytic shapes: (first entry in the analytic order) * 16 + count, or with BVH_LEAF and BVH_INSTANCE set an
+// instance (its index), in scenes that have some.
 #define BVH_LEAF 0x80000000u
 #define BVH_ANALYTIC 0x40000000u
+#define BVH_INSTANCE 0x20000000u
+#define BVH_RETURN 0xfffffffeu // on the stack: back from an instance
 #define BVH_EMPTY 0xffffffffu
 
 // Bounds of an absent child are lo = +infinity, hi = -infinity. Order of the rows: x, y, z, each lo then hi.
@@ -42,6 +45,17 @@ WAVELOBE_CHECK_SIZE(FewTriangle, 20);
 
 #define FEW_TRIANGLES_MAX 96u
 #define FEW_VERTICES_MAX 128u
+
+// One place where a group of shapes stands. A point p of the group is at to_world's linear part times p plus its
+// translation; rays are taken to the group by the inverse linear part, from that translation on.
+struct Instance {
+    struct Affine to_world;
+    float to_object[9]; // rows of the inverse linear part
+    Uint32 root;        // node of the group's own hierarchy
+};
+WAVELOBE_CHECK_SIZE(Instance, 88);
+
+#define INSTANCE_NONE 0xffffffffu
 
 // What a hit names: block * 8 + lane of a triangle, or HIT_ANALYTIC | index of an analytic shape.
 #define HIT_NONE 0xffffffffu

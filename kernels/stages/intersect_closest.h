@@ -30,6 +30,9 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
         set_slot(rays, PATH_U, i, hit.u);
         set_slot(rays, PATH_V, i, hit.v);
         set_slot(rays, PATH_HIT, i, as_float(hit.primitive));
+#if HAS_INSTANCES
+        set_slot(rays, PATH_INSTANCE, i, as_float(hit.instance));
+#endif
     }
 }
 #endif

@@ -3,21 +3,11 @@
 
 #include <tuple>
 
+#include "support/instances.h"
 #include "support/surface_bench.h"
-#include "support/triangle_meshes.h"
 
 namespace wavelobe::test {
 namespace {
-
-TriangleMesh mesh_of(const Triangles& triangles) {
-    TriangleMesh mesh;
-    for (const TriangleVertices& t : triangles) {
-        const auto first = static_cast<unsigned>(mesh.positions.size());
-        mesh.positions.insert(mesh.positions.end(), t.begin(), t.end());
-        mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-    return mesh;
-}
 
 struct Placement {
     const char* name;

@@ -31,6 +31,7 @@ struct TestPath {
     float eta = 1.0F;     // only in scenes with transmission
     std::uint32_t receiver = 0xffffffffU;  // only in scenes with a light tree; by itself: both sides
     glm::vec3 origin{0};  // traced paths keep it only in scenes with analytic shapes
+    std::uint32_t instance = INSTANCE_NONE;  // only in scenes with instances
 };
 
 struct TestShadowRay {
@@ -107,6 +108,7 @@ public:
         set(queue, layout_[path_eta], slot, p.eta);
         if (scene_.features.light_tree) set_bits(queue, layout_[path_receiver], slot, p.receiver);
         if (keeps_origin(queue)) set_vector(queue, layout_[path_origin], slot, p.origin);
+        if (scene_.features.instances) set_bits(queue, layout_[path_instance], slot, p.instance);
     }
 
     TestPath path(std::uint32_t queue, std::uint32_t slot) {
@@ -121,7 +123,8 @@ public:
                 get_bits(queue, layout_[path_depth], slot),
                 get(queue, layout_[path_eta], slot),
                 scene_.features.light_tree ? get_bits(queue, layout_[path_receiver], slot) : 0U,
-                keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0}};
+                keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0},
+                scene_.features.instances ? get_bits(queue, layout_[path_instance], slot) : INSTANCE_NONE};
     }
 
     void fill_shadows(const std::vector<TestShadowRay>& rays) {
@@ -174,6 +177,7 @@ private:
         path_eta,
         path_receiver,
         path_origin,
+        path_instance,
         shadow_t,
         shadow_direction,
         shadow_contribution,
@@ -190,7 +194,7 @@ kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
                            PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
-                           SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
+                           PATH_INSTANCE,                            SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";

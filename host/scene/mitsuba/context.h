@@ -34,6 +34,7 @@ struct Context {
     std::map<const Object*, std::shared_ptr<const Texture>> scalar_textures;
     std::map<std::string, std::shared_ptr<const Texture>> bitmaps;  // by file and options
     std::map<const Material*, int> material_indices;
+    std::map<const Object*, int> groups;
     std::shared_ptr<const Material> default_material, black_material;
 
     int environments = 0;
@@ -68,7 +69,15 @@ std::vector<std::string> bsdf_types();
 // ---- shapes.cpp -------------------------------------------------------------------------------------
 
 void read_shape(Context& context, const Object& object);
+// A shape that is neither a group nor an instance; empty where it does not enter the scene.
+std::optional<Shape> build_shape(Context& context, const Object& object);
 std::vector<std::string> shape_types();
+
+// ---- instances.cpp ----------------------------------------------------------------------------------
+
+// The index of the group, which is read once; -1 where it is refused.
+int read_shape_group(Context& context, const Object& object);
+void read_instance(Context& context, const Object& object);
 
 // ---- emitters.cpp -----------------------------------------------------------------------------------
 

@@ -149,13 +149,15 @@ struct Plugin {
     // Fills in the geometry; false for a shape that does not enter the scene.
     bool (*read)(Query&, Shape&);
 };
-constexpr std::array<Plugin, 7> plugins{{
+constexpr std::array<Plugin, 9> plugins{{
     {"cube", read_cube},
     {"cylinder", read_cylinder},
     {"disk", read_disk},
+    {"instance", nullptr},  // instances.cpp
     {"obj", read_obj},
     {"ply", read_ply},
     {"rectangle", read_rectangle},
+    {"shapegroup", nullptr},
     {"sphere", read_sphere},
 }};
 
@@ -176,9 +178,9 @@ const Object* only_child(Query& query, const std::string& tag) {
 
 }  // namespace
 
-void read_shape(Context& context, const Object& object) {
+std::optional<Shape> build_shape(Context& context, const Object& object) {
     const auto* plugin = find_plugin(context, object, plugins);
-    if (plugin == nullptr) return;
+    if (plugin == nullptr) return {};
     Query query(context, object);
     Shape shape;
     shape.name = object.id;
@@ -193,9 +195,19 @@ void read_shape(Context& context, const Object& object) {
                            "remove the medium");
     query.accept({"silhouette_sampling_weight"});
     query.finish();
-    if (!usable || bsdf.front == nullptr) return;
+    if (!usable || bsdf.front == nullptr) return {};
     shape.material = {material_index(context, bsdf.front), material_index(context, bsdf.back), bsdf.opacity};
-    context.scene.shapes.push_back(std::move(shape));
+    return shape;
+}
+
+void read_shape(Context& context, const Object& object) {
+    if (object.type == "shapegroup") {
+        read_shape_group(context, object);
+    } else if (object.type == "instance") {
+        read_instance(context, object);
+    } else if (std::optional<Shape> shape = build_shape(context, object)) {
+        context.scene.shapes.push_back(std::move(*shape));
+    }
 }
 
 std::vector<std::string> shape_types() { return names_of(plugins); }
