@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 #include <string_view>
+#include <tuple>
 
 #include "scene/fault.h"
 
@@ -19,6 +20,16 @@ std::optional<T> parse_number(std::string_view text) {
     return value;
 }
 
+// `WIDTHxHEIGHT`
+std::optional<std::pair<int, int>> parse_resolution(std::string_view text) {
+    const std::size_t sign = text.find('x');
+    if (sign == std::string_view::npos) return {};
+    const auto width = parse_number<int>(text.substr(0, sign));
+    const auto height = parse_number<int>(text.substr(sign + 1));
+    if (!width || !height || *width < 1 || *height < 1 || *width > 65536 || *height > 65536) return {};
+    return std::pair(*width, *height);
+}
+
 }  // namespace
 
 CLI::Validator whole_number(std::int64_t least, std::int64_t greatest) {
@@ -31,7 +42,7 @@ CLI::Validator whole_number(std::int64_t least, std::int64_t greatest) {
 }
 
 void SceneArguments::add_to(CLI::App& command) {
-    command.add_option("SCENE", path, "Mitsuba 3 XML file")->required();
+    command.add_option("SCENE", path, "Mitsuba 3 XML file, or glTF 2.0 (.gltf, .glb)")->required();
     const auto is_definition = [](const std::string& text) -> std::string {
         const std::size_t sign = text.find('=');
         if (sign != std::string::npos && sign > 0) return {};
@@ -41,9 +52,25 @@ void SceneArguments::add_to(CLI::App& command) {
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false)
         ->check(CLI::Validator(is_definition, ""));
+    const auto is_resolution = [](const std::string& text) -> std::string {
+        return parse_resolution(text) ? "" : "\"" + text + "\" is not of the form WIDTHxHEIGHT, each from 1 to 65536";
+    };
+    command.add_option("--resolution", resolution, "Size of a glTF scene's picture (default: 720 pixels high, at most 1280 wide)")
+        ->type_name("WIDTHxHEIGHT")
+        ->take_last()
+        ->check(CLI::Validator(is_resolution, ""));
 }
 
 Scene SceneArguments::read() const {
+    if (is_gltf(path)) {
+        if (!definitions.empty())
+            throw InputError(Fault{"-D", 0, 0, "", "a glTF scene has no <default>s to define", "leave it out"});
+        GltfOptions options;
+        if (const auto size = parse_resolution(resolution)) std::tie(options.width, options.height) = *size;
+        return read_gltf_scene(path, options);
+    }
+    if (!resolution.empty())
+        throw InputError(Fault{"--resolution", 0, 0, "", "is for glTF scenes; a Mitsuba scene's <film> has its size", "leave it out"});
     Definitions values;
     for (const std::string& text : definitions) {
         const std::size_t sign = text.find('=');
@@ -54,6 +81,10 @@ Scene SceneArguments::read() const {
 
 void print_warnings(const Scene& scene) {
     for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+void print_notes(const Scene& scene) {
+    for (const std::string& note : scene.notes) std::printf("%s\n", note.c_str());
 }
 
 std::optional<PixelWindow> parse_window(const std::string& text) {

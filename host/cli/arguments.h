@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include "scene/gltf_reader.h"
 #include "scene/mitsuba_reader.h"
 
 namespace wavelobe {
@@ -15,10 +16,11 @@ namespace wavelobe {
 // A check for whole numbers in a range, which says so when a value is anything else.
 CLI::Validator whole_number(std::int64_t least, std::int64_t greatest);
 
-// The positional SCENE and -D NAME=VALUE.
+// The positional SCENE, -D NAME=VALUE, and what glTF leaves to the user.
 struct SceneArguments {
     std::string path;
     std::vector<std::string> definitions;
+    std::string resolution;  // empty: the camera's aspect ratio decides
 
     void add_to(CLI::App& command);
     Scene read() const;
@@ -26,6 +28,9 @@ struct SceneArguments {
 
 // What the reader passed over or repaired, on stderr.
 void print_warnings(const Scene& scene);
+
+// What the reader added, on stdout.
+void print_notes(const Scene& scene);
 
 // Pixels from (x0, y0) up to, not including, (x1, y1).
 struct PixelWindow {

@@ -16,7 +16,8 @@ namespace {
 
 // In the order of the variants of MaterialModel and Emitter.
 constexpr std::array material_names{"diffuse",       "conductor",       "roughconductor", "dielectric",
-                                    "thindielectric", "roughdielectric", "plastic",        "phong"};
+                                    "thindielectric", "roughdielectric", "plastic",        "roughplastic",   "phong",
+                                    "metallicroughness"};
 static_assert(material_names.size() == std::variant_size_v<MaterialModel>);
 constexpr std::array emitter_names{"constant", "envmap", "point", "spot", "directional"};
 static_assert(emitter_names.size() == std::variant_size_v<Emitter>);
@@ -64,6 +65,7 @@ int run(const SceneArguments& arguments, bool program) {
         return exit_ok;
     }
     print_warnings(scene);
+    print_notes(scene);
     const SceneSummary summary = summarize(scene);
     std::map<std::string, int> materials;
     for (const Material& material : scene.materials) ++materials[material_names[material.model.index()]];

@@ -75,6 +75,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_UVS", f.uvs);
+    out.define("HAS_VERTEX_COLORS", f.vertex_colors);
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TRANSMISSION", f.transmission);
@@ -83,7 +84,11 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_MASKS", f.masks);
+    out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
     out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
@@ -172,6 +177,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(textured_emitters, "textured_emitters");
     add(smooth_normals, "smooth_normals");
     add(uvs, "uvs");
+    add(vertex_colors, "vertex_colors");
     add(analytic, "analytic_shapes");
     add(anisotropy, "anisotropy");
     add(transmission, "transmission");
@@ -181,6 +187,9 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(error_estimate, "error_estimate");
+    add(masks, "masks");
+    add(veiled_emitters, "veiled_emitters");
     add(light_tree, "light_tree");
     add(few_triangles, "few_triangles");
     return out;

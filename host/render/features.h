@@ -32,6 +32,7 @@ struct FeatureSet {
     bool textured_emitters = false;
     bool smooth_normals = false;
     bool uvs = false;
+    bool vertex_colors = false;
     bool analytic = false;
     bool anisotropy = false;
     bool transmission = false;
@@ -41,6 +42,9 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool error_estimate = false; // the film is kept in two independent halves
+    bool masks = false;            // rays pass some primitives, by their opacity
+    bool veiled_emitters = false;  // paths go on behind some emitters
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack

@@ -4,6 +4,7 @@
 
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
+#include "render/presence.h"
 #include "scene/fault.h"
 #include "tables/filter_table.h"
 
@@ -28,11 +29,13 @@ public:
 
     DeviceScene run() {
         for (const Shape& shape : scene_.shapes) {
-            if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) add_mesh(shape, *mesh);
+            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+            if (mesh != nullptr && is_there(shape)) add_mesh(shape, *mesh);
         }
         // Analytic shapes follow all triangles in the numbering of primitives.
         for (const Shape& shape : scene_.shapes) {
-            if (const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry)) add_analytic(shape, *analytic);
+            const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry);
+            if (analytic != nullptr && is_there(shape)) add_analytic(shape, *analytic);
         }
         const Bounds bounds = bounds_of_scene(out_);
         const double radius = out_.primitive_shapes.empty() ? 1.0 : 0.5 * glm::length(glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
@@ -54,6 +57,7 @@ private:
         FeatureSet& f = out_.features;
         f.textures = !out_.textures.empty();
         f.hide_emitters = scene_.integrator.hide_emitters;
+        if (!f.masks && !f.veiled_emitters) out_.opacities = {};
         f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
@@ -65,7 +69,12 @@ private:
         return shape.emitter && (shape.emitter->radiance.texture || shape.emitter->radiance.value != Rgb{0.0F});
     }
 
-    // The record of a shape with its materials; geometry is added by the caller.
+    // What is nowhere and does not shine is left out.
+    bool is_there(const Shape& shape) {
+        return emits(shape) || presence_.find(shape.material.opacity) != Presence::absent;
+    }
+
+    // The record of a shape with its materials and its opacity; geometry is added by the caller.
     DeviceShape device_shape(const Shape& shape) {
         DeviceShape s{};
         s.front_material = materials_.add(shape.material.front);
@@ -73,6 +82,7 @@ private:
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
         s.first_uv = WAVELOBE_NONE;
+        s.first_color = WAVELOBE_NONE;
         s.first_light = WAVELOBE_NONE;
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
@@ -86,6 +96,13 @@ private:
             s.flags |= SHAPE_EMITS;
             s.first_light = static_cast<std::uint32_t>(out_.lights.size());
             f.textured_emitters = f.textured_emitters || shape.emitter->radiance.texture != nullptr;
+        }
+        if (presence_.find(shape.material.opacity) == Presence::whole) {
+            out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F});
+        } else {
+            out_.opacities.push_back(materials_.opacity(shape.material.opacity));
+            s.flags |= emits(shape) ? SHAPE_VEILED : SHAPE_MASKED;
+            (emits(shape) ? f.veiled_emitters : f.masks) = true;
         }
         return s;
     }
@@ -107,6 +124,10 @@ private:
             out_.features.smooth_normals = true;
         }
         if (!mesh.uvs.empty()) s.first_uv = offset(out_.uvs.size(), shape);
+        if (!mesh.colors.empty()) {
+            s.first_color = offset(out_.colors.size(), shape);
+            out_.features.vertex_colors = true;
+        }
         const auto index = static_cast<std::uint32_t>(out_.shapes.size());
         for (const glm::uvec3& t : mesh.triangles) {
             out_.triangles.push_back({mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]});
@@ -115,6 +136,7 @@ private:
                 const std::uint32_t vertex = t[corner];
                 if (!mesh.normals.empty()) append(out_.normals, mesh.normals[vertex]);
                 if (!mesh.uvs.empty()) append(out_.uvs, mesh.uvs[vertex]);
+                if (!mesh.colors.empty()) append(out_.colors, mesh.colors[vertex]);
             }
         }
         if (emits(shape)) {
@@ -141,6 +163,7 @@ private:
     DeviceScene out_;
     MaterialFlattener materials_;
     LightFlattener lights_;
+    PresenceFinder presence_;
 };
 
 // Bounds of the unit shapes under an affine map, a few roundings wider than exact.

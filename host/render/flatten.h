@@ -16,6 +16,7 @@ namespace wavelobe {
 using DeviceMaterial = ::Material;
 using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
+using DeviceOpacity = ::Opacity;
 
 struct DeviceScene {
     FeatureSet features;
@@ -28,10 +29,12 @@ struct DeviceScene {
     std::vector<DeviceShape> shapes;
     std::vector<float> normals;
     std::vector<float> uvs;
+    std::vector<float> colors;
     std::vector<Analytic> analytics;
 
     // appearance
     std::vector<DeviceMaterial> materials;
+    std::vector<DeviceOpacity> opacities;  // one a shape, or none at all
     std::vector<DeviceTexture> textures;
     std::vector<float> texels;
 

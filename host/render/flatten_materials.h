@@ -18,10 +18,12 @@ public:
     std::uint32_t lobes(std::uint32_t device_material) const;
 
     TexturedRgb rgb(const Parameter& parameter);
+    DeviceOpacity opacity(const Opacity& opacity);
 
 private:
     TexturedFloat scalar(const Parameter& parameter);
-    std::uint32_t texture(const std::shared_ptr<const Texture>& texture);
+    std::uint32_t texture(const std::shared_ptr<const Texture>& texture, int channel);
+    std::uint32_t first_texel(const Texture& texture);
     void fill(DeviceMaterial& out, const Diffuse& m);
     void fill(DeviceMaterial& out, const Conductor& m);
     void fill(DeviceMaterial& out, const RoughConductor& m);
@@ -29,16 +31,23 @@ private:
     void fill(DeviceMaterial& out, const ThinDielectric& m);
     void fill(DeviceMaterial& out, const RoughDielectric& m);
     void fill(DeviceMaterial& out, const Plastic& m);
+    void fill(DeviceMaterial& out, const RoughPlastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
+    void fill(DeviceMaterial& out, const MetallicRoughness& m);
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);
     void fill_roughness(DeviceMaterial& out, const Parameter& alpha_u, const Parameter& alpha_v, Distribution distribution);
 
+    // Its record (DeviceMaterial::extension).
+    template <class Extension>
+    std::uint32_t add_extension(const Extension& extension);
+
     const Scene& scene_;
     DeviceScene& out_;
     std::map<int, std::uint32_t> materials_;
-    std::map<const Texture*, std::uint32_t> textures_;
+    std::map<std::pair<const Texture*, int>, std::uint32_t> textures_;
+    std::map<const Texture*, std::uint32_t> texels_;
 };
 
 }  // namespace wavelobe

@@ -25,4 +25,10 @@ std::string read_file(const std::string& path) {
     return content;
 }
 
+void require_file(const std::string& path) {
+    std::error_code error;
+    [[maybe_unused]] const auto size = std::filesystem::file_size(path, error);
+    if (error) throw InputError(Fault{path, 0, 0, "", "cannot read the file: " + error.message(), "check the path and the permissions"});
+}
+
 }  // namespace wavelobe

@@ -34,9 +34,13 @@ Bitmap make_image(const std::string& path, std::int64_t width, std::int64_t heig
 
 Bitmap load_image(const std::string& path, Transfer transfer) {
     const std::string content = read_file(path);
+    if (content.starts_with("\x76\x2f\x31\x01")) return decode_exr(path);
+    return decode_image(path, content, transfer);
+}
+
+Bitmap decode_image(const std::string& path, const std::string& content, Transfer transfer) {
     if (content.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(path, content, transfer);
     if (content.starts_with("\xff\xd8")) return decode_jpeg(path, content, transfer);
-    if (content.starts_with("\x76\x2f\x31\x01")) return decode_exr(path);
     if (content.starts_with("#?")) return decode_radiance(path, content);
     throw InputError(Fault{path, 0, 0, "",
                            "not an image of a supported format; expected PNG, JPEG, OpenEXR or Radiance HDR",

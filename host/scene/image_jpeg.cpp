@@ -78,7 +78,8 @@ Bitmap decode_jpeg(const std::string& path, const std::string& content, Transfer
     if (!read_pixels(decoding)) fail();
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const float value = static_cast<float>(decoding.pixels[channels == 3 ? i : i / 3]) / 255.0F;
-        image.rgb[i] = transfer == Transfer::linear ? value : srgb_to_linear(value);
+        if (transfer == Transfer::alpha) image.rgb[i] = 1.0F;
+        else image.rgb[i] = transfer == Transfer::linear ? value : srgb_to_linear(value);
     }
     return image;
 }

@@ -92,6 +92,11 @@ Bitmap decode_png(const std::string& path, const std::string& content, Transfer 
 
     const auto channels = static_cast<std::size_t>(decoding.channels);
     const std::size_t colours = channels >= 3 ? 3 : 1;
+    if (transfer == Transfer::alpha) {
+        for (std::size_t i = 0; i < image.rgb.size(); ++i)
+            image.rgb[i] = channels > colours ? sample(decoding, i / 3 * channels + colours) : 1.0F;
+        return image;
+    }
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const float value = sample(decoding, i / 3 * channels + (colours == 3 ? i % 3 : 0));
         image.rgb[i] = transfer == Transfer::linear ? value : srgb_to_linear(value);

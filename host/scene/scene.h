@@ -32,6 +32,7 @@ struct Bitmap {
     std::vector<float> rgb;  // width * height * 3, linear
     Filter filter = Filter::bilinear;
     Wrap wrap = Wrap::repeat;
+    std::optional<Wrap> row_wrap{};  // of rows, where it differs from that of columns
 };
 
 // color0 where (u, v), to_uv applied, has both or neither of its fractions above one half.
@@ -51,6 +52,7 @@ struct Texture {
 struct Parameter {
     Rgb value{0.0F};
     std::shared_ptr<const Texture> texture;  // null: constant
+    int channel = 0;                         // of the bitmap that a scalar uses: red, green or blue
 };
 
 // ---- materials -----------------------------------------------------------------------------------
@@ -105,6 +107,15 @@ struct Plastic {
     bool nonlinear = false;
 };
 
+struct RoughPlastic {
+    float eta = 1.49F / 1.000277F;
+    Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    float alpha = 0.1F;
+    Distribution distribution = Distribution::beckmann;
+    bool nonlinear = false;
+};
+
 // Normalized Phong of Mitsuba 0.x: diffuse / pi + specular * (exponent + 2) / (2 pi) * cos^exponent.
 struct Phong {
     Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
@@ -112,12 +123,32 @@ struct Phong {
     Parameter exponent{Rgb{30.0F}, nullptr};
 };
 
+// glTF 2.0, appendix B: a dielectric of index 1.5 over a diffuse base, mixed with a metal of the base colour. Parameters are
+// products of value and texture.
+struct MetallicRoughness {
+    Parameter base_color{Rgb{1.0F}, nullptr};
+    Parameter metallic{Rgb{1.0F}, nullptr};
+    Parameter roughness{Rgb{1.0F}, nullptr};  // square root of the microfacets' alpha
+    float ior = 1.5F;             // 0: infinite
+    float specular = 1.0F;        // KHR_materials_specular: scales the dielectric's reflection
+    Rgb specular_color{1.0F};     // ... at normal incidence
+};
+
 using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
-                                   RoughDielectric, Plastic, Phong>;
+                                   RoughDielectric, Plastic, RoughPlastic, Phong, MetallicRoughness>;
 
 struct Material {
     MaterialModel model;
     std::string name;  // id in the file, for messages
+};
+
+// How much of a surface is there, both sides alike: rays, those to lights among them, pass it with probability 1 - opacity. The
+// value's red channel is scaled (a texture's alone) and clamped to [0, 1]; with a cutoff (glTF's alpha mode MASK) the surface
+// is all there where the scaled value reaches it and not at all elsewhere. What a surface emits is not lessened.
+struct Opacity {
+    Parameter value{Rgb{1.0F}, nullptr};
+    float texture_scale = 1.0F;
+    std::optional<float> cutoff;
 };
 
 // What a surface shows on each side. Transmissive materials have the same index on both sides;
@@ -125,6 +156,7 @@ struct Material {
 struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
+    Opacity opacity{};
 };
 
 // ---- shapes --------------------------------------------------------------------------------------
@@ -136,6 +168,7 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<glm::vec2> uvs;
+    std::vector<glm::vec3> colors;  // linear, empty or one a vertex; they scale MetallicRoughness::base_color
     std::vector<glm::uvec3> triangles;
     bool parallelogram = false;  // exactly two triangles (0,1,2) (0,2,3) forming a parallelogram: lit as one
 };
@@ -238,6 +271,7 @@ struct Scene {
     std::uint32_t seed = 0;
     std::string name;  // file name without folder and ending
     std::vector<std::string> warnings;  // what a reader passed over or repaired, one line each
+    std::vector<std::string> notes;     // what a reader added, one line each
 };
 
 }  // namespace wavelobe

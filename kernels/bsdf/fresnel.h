@@ -17,7 +17,7 @@ typedef struct {
 // With C the cosine above the interface and G = eta times the cosine below it, Snell's law reads G^2 - C^2 = eta^2 - 1,
 // and the amplitudes of both polarizations follow without differences of nearly equal numbers:
 //   r_s = (1 - eta^2) / (C + G)^2
-//   r_p = (eta^2 - 1) ((eta^2 + 1) C^2 - 1) / (eta^2 C + G)^2,  (eta^2 + 1) C^2 - 1 = (eta^2 + 1) G^2 - eta^4
+//   r_p = (eta^2 - 1) (eta^2 C^2 - (1 - C^2)) / (eta^2 C + G)^2
 // Born, Wolf 1999, "Principles of Optics", section 1.5.2, rationalized.
 INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
     Int above = cos_i >= 0.0f;
@@ -25,8 +25,14 @@ INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
     Float eta_squared = eta * eta;
     Float contrast = (eta - 1.0f) * (eta + 1.0f); // eta^2 - 1
 
-    Float known = SELECT(above, fabs(cos_i), eta * fabs(cos_i));
-    Float other_squared = difference_of_products(known, known, SELECT(above, 1.0f - eta, eta - 1.0f), eta + 1.0f);
+    Float c = fabs(cos_i);
+    Float cos_squared = c * c;
+    Float sin_squared = (1.0f - c) * (1.0f + c);
+    Float known = SELECT(above, c, eta * c);
+    // By Snell's law from the sine or from the cosine, whichever is small.
+    Float of_sine = SELECT(above, eta_squared - sin_squared, madd(-eta_squared, sin_squared, ONE));
+    Float of_cosine = difference_of_products(known, known, SELECT(above, 1.0f - eta, eta - 1.0f), eta + 1.0f);
+    Float other_squared = SELECT(cos_squared > 0.5f, of_sine, of_cosine);
     Int refracts = other_squared > 0.0f;
     Float other = sqrt(SELECT(refracts, other_squared, ZERO));
     Float C = SELECT(above, known, other);
@@ -40,8 +46,9 @@ INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
     Float over_s = inverse * squared_p;
     Float over_p = inverse * squared_s;
     Float r_s = contrast * over_s;
-    // The same in C or in G, whichever is given.
-    Float brewster = madd(eta_squared + 1.0f, known * known, SELECT(above, (Float)-1.0f, -(eta_squared * eta_squared)));
+    // eta^2 C^2 - (1 - C^2), from below in terms of the cosine there.
+    Float brewster = SELECT(above, madd(eta_squared, cos_squared, -sin_squared),
+                            eta_squared * madd(-eta_squared, sin_squared, cos_squared));
     Float r_p = contrast * brewster * over_p;
     Float reflectance = LESSER(0.5f * madd(r_s, r_s, r_p * r_p), ONE);
     Float transmittance = LESSER(2.0f * C * G * madd(eta_squared, over_p, over_s), ONE);
@@ -63,11 +70,14 @@ INLINE DielectricFresnel fresnel_dielectric(Float cos_i, Float eta) {
 // With (a + i b)^2 = (eta + i k)^2 - sin^2 (Born, Wolf 1999, "Principles of Optics", section 14.2):
 //   R_s = ((a - cos)^2 + b^2) / ((a + cos)^2 + b^2)
 //   R_p = R_s (t - 2 a cos sin^2) / (t + 2 a cos sin^2),  t = (a^2 + b^2) cos^2 + sin^4
+// and a - cos = (eta^2 - 1 - k^2 + b^2) / (a + cos), which keeps its digits where the two are close.
 INLINE Float fresnel_conductor(Float cos_i, Float eta, Float k) {
     Float c = LESSER(cos_i, ONE);
     Float cos_squared = c * c;
-    Float sin_squared = 1.0f - cos_squared;
-    Float real = difference_of_products(eta, eta, k, k) - sin_squared;
+    Float sin_squared = (1.0f - c) * (1.0f + c);
+    Float contrast = difference_of_products(eta - 1.0f, eta + 1.0f, k, k); // eta^2 - 1 - k^2
+    // eta^2 - k^2 - sin^2, the small one of sine and cosine subtracted or added.
+    Float real = SELECT(cos_squared > 0.5f, difference_of_products(eta, eta, k, k) - sin_squared, cos_squared + contrast);
     Float half_imaginary = eta * k;
     Float modulus = sqrt(madd(real, real, 4.0f * half_imaginary * half_imaginary)); // a^2 + b^2
 
@@ -78,9 +88,12 @@ INLINE Float fresnel_conductor(Float cos_i, Float eta, Float k) {
     Float b = SELECT(real >= 0.0f, smaller, larger);
 
     Float b_squared = b * b;
+    Float sum = a + c;
+    Float difference = a - c;
+    difference = SELECT(fabs(difference) > 0.5f * c, difference, madd(b, b, contrast) / GREATER(sum, (Float)1e-30f));
     Float t = madd(modulus, cos_squared, sin_squared * sin_squared);
-    Float numerator = madd(a - c, a - c, b_squared) * t;
-    Float denominator = madd(a + c, a + c, b_squared) * madd(2.0f * a * c, sin_squared, t);
+    Float numerator = madd(difference, difference, b_squared) * t;
+    Float denominator = madd(sum, sum, b_squared) * madd(2.0f * a * c, sin_squared, t);
     // The denominator vanishes only where a vanishing index meets normal incidence: all is reflected there.
     return SELECT(denominator > 0.0f, LESSER(numerator / denominator, ONE), ONE);
 }

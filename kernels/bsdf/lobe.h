@@ -28,6 +28,9 @@
 typedef struct {
     UInt material;
     Float u, v;
+#if HAS_VERTEX_COLORS
+    Rgb color; // of the vertices, white where there is none
+#endif
     global const struct Material *materials;
     global const struct Texture *textures;
     global const float *texels;
@@ -64,15 +67,24 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
     return vec3(material_word(in, offset), material_word(in, offset + 1u), material_word(in, offset + 2u));
 }
 
-// load_rgb(in, diffuse) and load_float(in, alpha_u): a parameter of each lane, textured or not.
+// load_rgb(in, diffuse) and load_float(in, alpha_u): a parameter of each lane, textured or not. The scaled forms are products of
+// the constant and the texture, where load_rgb takes the texture in its place.
 #if HAS_TEXTURES
 #include "bsdf/texture.h"
 #else
 #define load_rgb(in, field) constant_rgb(in, WORD_OFFSET(Material, field))
 #define load_float(in, field) constant_float(in, WORD_OFFSET(Material, field))
+#define load_scaled_rgb(in, field) load_rgb(in, field)
+#define load_scaled_float(in, field) load_float(in, field)
 #endif
 
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))
 #define load_constant(in, field) material_word(in, WORD_OFFSET(Material, field))
+
+// The parameters of a material's extension, a struct of shared/materials.h.
+INLINE MaterialInput extension_of(MaterialInput in) {
+    in.material = as_UInt(load_constant(in, extension));
+    return in;
+}
 
 #endif

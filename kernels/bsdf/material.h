@@ -25,6 +25,9 @@ INLINE MaterialInput material_input(const Surface *surface, global const struct 
     in.material = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
     in.u = surface->u;
     in.v = surface->v;
+#if HAS_VERTEX_COLORS
+    in.color = surface->color;
+#endif
     in.materials = materials;
     in.textures = textures;
     in.texels = texels;

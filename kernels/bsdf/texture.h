@@ -70,8 +70,9 @@ INLINE TexelQuad texel_quad(TextureBuffers b, UInt i, UInt kind, TextureCoordina
     q.v = SELECT(q.filtered, y - row, ZERO);
     Float column0 = wrap_texel(column, width, kind);
     Float column1 = wrap_texel(column + 1.0f, width, kind);
-    Float row0 = wrap_texel(row, height, kind);
-    Float row1 = wrap_texel(row + 1.0f, height, kind);
+    UInt row_kind = SELECT((kind & (UInt)TEXTURE_OTHER_ROWS) != (UInt)0u, kind >> TEXTURE_ROW_SHIFT, kind);
+    Float row0 = wrap_texel(row, height, row_kind);
+    Float row1 = wrap_texel(row + 1.0f, height, row_kind);
     q.offset[0] = texel_offset(first, width, column0, row0);
     q.offset[1] = texel_offset(first, width, column1, row0);
     q.offset[2] = texel_offset(first, width, column0, row1);
@@ -135,31 +136,43 @@ INLINE Float texture_float(TextureBuffers b, UInt i, Float u, Float v) {
     return value;
 }
 
+INLINE Rgb looked_up_rgb(MaterialInput in, UInt texture, Int textured) {
+    TextureBuffers b = {in.textures, in.texels};
+    // Lanes without a texture look up the first.
+    return texture_rgb(b, SELECT(textured, texture, (UInt)0u), in.u, in.v);
+}
+
+INLINE Float looked_up_float(MaterialInput in, UInt texture, Int textured) {
+    TextureBuffers b = {in.textures, in.texels};
+    return texture_float(b, SELECT(textured, texture, (UInt)0u), in.u, in.v);
+}
+
 // Parameters of materials, textured or not; `offset` is that of the parameter in the record.
-INLINE Rgb parameter_rgb(MaterialInput in, uint offset) {
+INLINE Rgb parameter_rgb(MaterialInput in, uint offset, int scaled) {
     Rgb value = constant_rgb(in, offset);
     UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedRgb, texture)));
     Int textured = texture != (UInt)WAVELOBE_NONE;
     if (any_lane(textured)) {
-        TextureBuffers b = {in.textures, in.texels};
-        // Lanes without a texture look up the first.
-        value = select3(textured, texture_rgb(b, SELECT(textured, texture, (UInt)0u), in.u, in.v), value);
+        Rgb found = looked_up_rgb(in, texture, textured);
+        value = select3(textured, scaled ? mul(value, found) : found, value);
     }
     return value;
 }
 
-INLINE Float parameter_float(MaterialInput in, uint offset) {
+INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
     Float value = constant_float(in, offset);
     UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedFloat, texture)));
     Int textured = texture != (UInt)WAVELOBE_NONE;
     if (any_lane(textured)) {
-        TextureBuffers b = {in.textures, in.texels};
-        value = SELECT(textured, texture_float(b, SELECT(textured, texture, (UInt)0u), in.u, in.v), value);
+        Float found = looked_up_float(in, texture, textured);
+        value = SELECT(textured, scaled ? value * found : found, value);
     }
     return value;
 }
 
-#define load_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field))
-#define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field))
+#define load_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 0)
+#define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 0)
+#define load_scaled_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 1)
+#define load_scaled_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 1)
 
 #endif

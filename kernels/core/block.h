@@ -10,7 +10,7 @@
 // Fields of a path, in order of storage. A path that was traced is kept without those it no longer needs: its origin
 // (except where analytic shapes are refined from it) comes last and is dropped.
 #define PATH_T 0u         // distance of the hit; before tracing: how far to look
-#define PATH_HIT 1u       // what was hit, see shared/bvh.h
+#define PATH_HIT 1u       // what was hit, see shared/bvh.h; before tracing: the primitive that the ray leaves, or HIT_NONE
 #define PATH_U 2u         // barycentric coordinates
 #define PATH_V 3u
 #define PATH_DIRECTION 4u // 3, unit
@@ -39,7 +39,8 @@
 #define SHADOW_DIRECTION 1u   // 3, unit
 #define SHADOW_CONTRIBUTION 4u // 3, radiance the path gains if nothing is in the way
 #define SHADOW_ID 7u
-#define SHADOW_ORIGIN 8u      // 3
+#define SHADOW_FROM 8u        // primitive that the ray leaves
+#define SHADOW_ORIGIN 9u      // 3
 
 #define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
 #define RAYS_OFFSET 0u

@@ -7,6 +7,7 @@
 #include "shared/bvh.h"
 #include "shared/scene.h"
 #include "shared/materials.h"
+#include "shapes/triangle_uvs.h"
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
@@ -22,6 +23,9 @@ typedef struct {
 #endif
 #if HAS_UVS
     global const float *uvs; // 6 a triangle
+#endif
+#if HAS_VERTEX_COLORS
+    global const float *colors; // 9 a triangle
 #endif
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
@@ -43,6 +47,13 @@ typedef struct {
 #define UVS_PARAMETER
 #define UVS_ARGUMENT
 #endif
+#if HAS_VERTEX_COLORS
+#define COLORS_PARAMETER , global const float *colors
+#define COLORS_ARGUMENT , colors
+#else
+#define COLORS_PARAMETER
+#define COLORS_ARGUMENT
+#endif
 #if HAS_ANALYTIC
 #define ANALYTIC_PARAMETER , global const struct Analytic *analytics
 #define ANALYTIC_ARGUMENT , analytics, parameters->triangle_count
@@ -54,9 +65,9 @@ typedef struct {
 #define SURFACE_PARAMETERS                                                                                  \
     global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
-        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER ANALYTIC_PARAMETER
+        global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER
 #define SURFACE_VIEW \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT ANALYTIC_ARGUMENT}
+    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT ANALYTIC_ARGUMENT}
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -84,6 +95,9 @@ typedef struct {
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
     Float u, v;    // texture coordinates
+#if HAS_VERTEX_COLORS
+    Rgb color;
+#endif
     UInt shape;
     UInt primitive;
     UInt material; // WAVELOBE_NONE: black
@@ -123,14 +137,21 @@ INLINE Vec3 normalize_any_scale(Vec3 a) {
 
 INLINE UInt block_word(UInt slot) { return (slot >> 3) * RECORD_WORDS(TriangleBlock) + (slot & (UInt)7u); }
 
+// The ids of primitives carry a bit for rays where scenes have masks.
+#if HAS_MASKS
+#define PRIMITIVE_ID(word) ((word) & (UInt)~PRIMITIVE_MASKED)
+#else
+#define PRIMITIVE_ID(word) (word)
+#endif
+
 INLINE UInt primitive_of_hit(SurfaceView s, UInt hit) {
 #if HAS_ANALYTIC
     Int analytic = (hit & (UInt)HIT_ANALYTIC) != (UInt)0u;
     UInt slot = SELECT(analytic, (UInt)0u, hit);
-    UInt triangle = gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot));
+    UInt triangle = PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
     return SELECT(analytic, (hit & (UInt)~HIT_ANALYTIC) + (UInt)s.triangle_count, triangle);
 #else
-    return gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(hit));
+    return PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(hit)));
 #endif
 }
 
@@ -147,16 +168,7 @@ INLINE Vec3 interpolate(Vec3 a, Vec3 b, Vec3 c, Float wa, Float wb, Float wc) {
 INLINE Vec3 gather_vec3(global const float *p, UInt i) { return vec3(gather(p, i), gather(p + 1, i), gather(p + 2, i)); }
 
 #if HAS_UVS
-// The tangent along u of a triangle with texture coordinates, and the coordinates at the hit.
-INLINE void triangle_uvs(SurfaceView s, UInt first_uv, UInt triangle, Float wb, Float wc, Float wa, Surface *out) {
-    Int textured = first_uv != (UInt)WAVELOBE_NONE;
-    UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Float u0 = gather(s.uvs, at), v0 = gather(s.uvs + 1, at), u1 = gather(s.uvs + 2, at), v1 = gather(s.uvs + 3, at);
-    Float u2 = gather(s.uvs + 4, at), v2 = gather(s.uvs + 5, at);
-    out->u = SELECT(textured, madd(u0, wa, madd(u1, wb, u2 * wc)), wb);
-    out->v = SELECT(textured, madd(v0, wa, madd(v1, wb, v2 * wc)), wc);
-}
-
+// The tangent along u of a triangle with texture coordinates.
 INLINE Vec3 triangle_tangent(SurfaceView s, UInt first_uv, UInt triangle, Vec3 e1, Vec3 e2, Vec3 fallback) {
     Int textured = first_uv != (UInt)WAVELOBE_NONE;
     UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
@@ -190,7 +202,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
     Vec3 n = out->normal;
-#if HAS_SMOOTH_NORMALS || HAS_UVS
+#if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
     UInt triangle = out->primitive - first_primitive;
 #endif
 #if HAS_SMOOTH_NORMALS
@@ -204,11 +216,22 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
         n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), n);
     }
 #endif
+#if HAS_VERTEX_COLORS
+    UInt first_color = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_color);
+    Int colored = first_color != (UInt)WAVELOBE_NONE;
+    out->color = vec3_all(ONE);
+    if (any_lane(colored)) {
+        UInt at = SELECT(colored, first_color + triangle * 9u, (UInt)0u);
+        Rgb color = interpolate(gather_vec3(s.colors, at), gather_vec3(s.colors + 3, at), gather_vec3(s.colors + 6, at),
+                                wa, wb, wc);
+        out->color = select3(colored, color, out->color);
+    }
+#endif
     out->u = wb;
     out->v = wc;
 #if HAS_UVS
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_uv);
-    triangle_uvs(s, first_uv, triangle, wb, wc, wa, out);
+    triangle_uvs(s.uvs, first_uv, triangle, wa, wb, wc, &out->u, &out->v);
 #endif
 #if HAS_ANISOTROPY && HAS_UVS
     out->frame = frame_along(n, triangle_tangent(s, first_uv, triangle, e1, e2, frame_of_normal(n).s));
@@ -226,6 +249,9 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->normal = select3(analytic, h.normal, out->normal);
     out->u = SELECT(analytic, h.u, out->u);
     out->v = SELECT(analytic, h.v, out->v);
+#if HAS_VERTEX_COLORS
+    out->color = select3(analytic, vec3_all(ONE), out->color);
+#endif
 #if HAS_ANISOTROPY
     Frame frame = frame_along(h.normal, h.tangent);
 #else

@@ -25,6 +25,14 @@ struct TexturedFloat {
     Uint32 texture;
 };
 
+// How much of a shape is there: rays pass it with probability 1 - opacity. One record a shape, in scenes with such shapes.
+struct Opacity {
+    struct TexturedFloat value;
+    float scale;  // of a texture's value
+    float cutoff; // at least 0: all there from this value on, and not at all below it; negative: none
+};
+WAVELOBE_CHECK_SIZE(Opacity, 16);
+
 struct Material {
     Uint32 lobes; // bit LOBE_x of bsdf/lobes.def for each lobe it has
     Uint32 flags;
@@ -36,10 +44,21 @@ struct Material {
     struct TexturedFloat alpha_u;    // microfacet roughness
     struct TexturedFloat alpha_v;
     struct TexturedFloat exponent;   // Phong
+    struct TexturedFloat metallic;   // glTF
     float diffuse_fresnel_internal;  // plastic: mean Fresnel reflectance from inside, cosine weighted
-    float specular_weight;           // share of the specular lobe in lobe selection, from mean reflectances
+    float specular_weight;           // plastic: share of the specular lobe in lobe selection; glTF: reflectance at grazing incidence
+    Uint32 extension;                // record from which on the parameters lie that few materials have
 };
-WAVELOBE_CHECK_SIZE(Material, 112);
+WAVELOBE_CHECK_SIZE(Material, 124);
+
+// Extensions lie in the array of materials, in whole records; each lobe that has one says what is in it.
+
+// Rough plastic: the share of light that its surface lets through from outside, at cosines in equal steps from 0 to 1.
+#define ROUGH_TRANSMITTANCE_STEPS 64u
+struct RoughTransmittance {
+    float at[ROUGH_TRANSMITTANCE_STEPS];
+};
+WAVELOBE_CHECK_SIZE(RoughTransmittance, 256);
 
 struct Texture {
     Uint32 kind;         // TEXTURE_x
@@ -55,5 +74,7 @@ WAVELOBE_CHECK_SIZE(Texture, 64);
 #define TEXTURE_NEAREST 2u   // bit: nearest neighbour, otherwise bilinear
 #define TEXTURE_WRAP_MIRROR 4u
 #define TEXTURE_WRAP_CLAMP 8u
+#define TEXTURE_OTHER_ROWS 16u // bit: rows wrap by their own bits, those above shifted
+#define TEXTURE_ROW_SHIFT 3u
 
 #endif

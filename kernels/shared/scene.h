@@ -11,17 +11,20 @@ struct Shape {
     Uint32 first_primitive; // triangle id of its first triangle
     Uint32 first_normal;    // offset into `normals`, in floats, of its first triangle; WAVELOBE_NONE: faceted
     Uint32 first_uv;        // offset into `uvs`; WAVELOBE_NONE: barycentric coordinates serve
+    Uint32 first_color;     // offset into `colors`; WAVELOBE_NONE: white
     Uint32 first_light;     // light of its first triangle; WAVELOBE_NONE: does not emit
     Uint32 triangles_per_light; // 1, or 2 for a parallelogram lit as one
     Uint32 flags;           // SHAPE_x bits
 };
-WAVELOBE_CHECK_SIZE(Shape, 32);
+WAVELOBE_CHECK_SIZE(Shape, 36);
 
 // Classes of lobes that either side of it has, and whether it is a light.
 #define SHAPE_HAS_DELTA 1u
 #define SHAPE_HAS_GLOSSY 2u
 #define SHAPE_HAS_DIFFUSE 4u
 #define SHAPE_EMITS 8u
+#define SHAPE_MASKED 16u // rays ask for its opacity
+#define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
 
 // Perspective camera, film window, and the integrator's limits.
 struct RenderParameters {

@@ -49,6 +49,7 @@ INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId s
     append_field(shadow, SHADOW_T, at, SELECT(light.at_infinity, (Float)INFINITY, distance * SHADOW_REACH), bits);
     append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
     append_uint(shadow, SHADOW_ID, at, path->id, bits);
+    append_uint(shadow, SHADOW_FROM, at, surface->primitive, bits);
     return at + popcount(bits);
 }
 #endif

@@ -26,6 +26,7 @@ inline Material white_material() {
     m.alpha_u = {0.1F, WAVELOBE_NONE};
     m.alpha_v = {0.1F, WAVELOBE_NONE};
     m.exponent = {30.0F, WAVELOBE_NONE};
+    m.metallic = {0.0F, WAVELOBE_NONE};
     return m;
 }
 
@@ -58,6 +59,14 @@ inline Material rough(Material m, float alpha_u, float alpha_v, Uint32 flags = 0
 
 inline Material phong(Material m, float exponent) {
     m.exponent.value = exponent;
+    return m;
+}
+
+inline Material metallic_roughness(Material m, float metallic, float roughness, float f0 = 0.04F, float f90 = 1.0F) {
+    m.metallic.value = metallic;
+    m.alpha_u.value = roughness;
+    m.specular.value = {f0, f0, f0};
+    m.specular_weight = f90;
     return m;
 }
 
@@ -114,14 +123,31 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"beckmann_glass", rough(dielectric(white, 1.5F), 0.3F, 0.3F, MATERIAL_BECKMANN)},
           {"beckmann_bubble", rough(dielectric(coloured, 1.0F / 1.5F), 0.7F, 0.2F, MATERIAL_BECKMANN)},
           {"beckmann_smoothest", rough(dielectric(white, 1.5F), 1e-4F, 1e-4F, MATERIAL_BECKMANN), 1e-4}}},
+        {"rough_plastic_coat",
+         {{"ggx", rough(plastic(white, 1.5F), 0.3F, 0.3F)},
+          {"ggx_smoothest", rough(plastic(white, 1.5F), 1e-4F, 1e-4F), 1e-4},
+          {"beckmann", rough(plastic(coloured, 1.3F), 0.2F, 0.2F, MATERIAL_BECKMANN)},
+          {"beckmann_roughest", rough(plastic(white, 2.4F), 1.0F, 1.0F, MATERIAL_BECKMANN)}}},
         {"phong",
          {{"broadest", phong(white, 0.0F)},
           {"broad", phong(coloured, 1.0F)},
           {"glossy", phong(white, 30.0F)},
           {"narrow", phong(coloured, 1000.0F)},
           {"narrowest", phong(white, 1e6F), 1e-3}}},
+        {"metallic_roughness",
+         {{"plastic", metallic_roughness(coloured, 0.0F, 0.5F)},
+          {"metal", metallic_roughness(coloured, 1.0F, 0.4F)},
+          {"between", metallic_roughness(coloured, 0.3F, 0.7F, 0.02F, 0.5F)},
+          {"roughest", metallic_roughness(white, 1.0F, 1.0F)},
+          {"smoothest", metallic_roughness(white, 1.0F, 0.0F), 1e-4}}},
         {"lambert", {{"white", white}, {"coloured", coloured}}},
+        {"metallic_roughness_base",
+         {{"white", metallic_roughness(white, 0.0F, 0.5F)}, {"coloured", metallic_roughness(coloured, 0.4F, 0.5F, 0.2F)}}},
         {"plastic_base",
+         {{"white", plastic(white, 1.5F)},
+          {"coloured", plastic(coloured, 1.3F)},
+          {"saturated", plastic(coloured, 1.5F, MATERIAL_NONLINEAR)}}},
+        {"rough_plastic_base",
          {{"white", plastic(white, 1.5F)},
           {"coloured", plastic(coloured, 1.3F)},
           {"saturated", plastic(coloured, 1.5F, MATERIAL_NONLINEAR)}}},

@@ -1,6 +1,7 @@
 // Lobes in double precision on the host, by the textbook formulas, for comparison with the kernels.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <glm/glm.hpp>
 
 #include "shared/materials.h"
+#include "support/lobe_extensions.h"
 
 namespace wavelobe::test {
 
@@ -116,6 +118,16 @@ inline ReferenceValue reference_phong(const ::Material& m, const glm::dvec3& wi,
     return {to_double(m.specular.value) * ((n + 2.0) / (2.0 * pi) * power * wo.z), (n + 1.0) / (2.0 * pi) * power};
 }
 
+inline ReferenceValue reference_rough_plastic_coat(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = reference_density(m, h);
+    const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
+    const double fresnel = reference_fresnel_dielectric(glm::dot(wi, h), m.eta.x);
+    return {to_double(m.specular.value) * (fresnel * d * g / (4.0 * wi.z)),
+            d * reference_masking(m, wi, true) / (4.0 * wi.z)};
+}
+
 inline ReferenceValue reference_lambert(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     return {to_double(m.diffuse.value) * (wo.z / pi), wo.z / pi};
@@ -132,6 +144,62 @@ inline ReferenceValue reference_plastic_base(const ::Material& m, const glm::dve
             wo.z / pi};
 }
 
+// glTF 2.0, appendix B.3: mix(fresnel_mix(diffuse, specular), conductor_fresnel(specular), metallic), by its own formulas.
+struct GltfTerms {
+    double specular_brdf;  // D times the visibility
+    double fresnel;        // (1 - |V . H|)^5
+    double pdf;
+};
+
+inline GltfTerms gltf_terms(::Material m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const double alpha = std::max(static_cast<double>(m.alpha_u.value * m.alpha_u.value), 1e-4);
+    m.alpha_u.value = m.alpha_v.value = static_cast<float>(alpha);
+    m.flags = 0;
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = reference_density(m, h);
+    const double v = reference_masking(m, wi, true) * reference_masking(m, wo, true) / (4.0 * wi.z * wo.z);
+    return {d * v, std::pow(1.0 - std::abs(glm::dot(wi, h)), 5.0), d * reference_masking(m, wi, true) / (4.0 * wi.z)};
+}
+
+inline ReferenceValue reference_metallic_roughness(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const GltfTerms t = gltf_terms(m, wi, wo);
+    const glm::dvec3 f0 = to_double(m.specular.value);
+    const glm::dvec3 base = to_double(m.diffuse.value);
+    const double metallic = m.metallic.value;
+    const double f90 = m.specular_weight;
+    const glm::dvec3 dielectric = (f0 + (f90 - f0) * t.fresnel) * t.specular_brdf;
+    const glm::dvec3 metal = (base + (1.0 - base) * t.fresnel) * t.specular_brdf;
+    return {glm::mix(dielectric, metal, metallic) * wo.z, t.pdf};
+}
+
+inline ReferenceValue reference_metallic_roughness_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const double fresnel = gltf_terms(m, wi, wo).fresnel;
+    const double f0 = std::max({m.specular.value.x, m.specular.value.y, m.specular.value.z});
+    const double passed = (1.0 - (f0 + (static_cast<double>(m.specular_weight) - f0) * fresnel)) * (1.0 - static_cast<double>(m.metallic.value));
+    return {to_double(m.diffuse.value) * (passed * wo.z / pi), wo.z / pi};
+}
+
+inline double reference_rough_transmittance(const ::Material& m, double cosine) {
+    const auto& table = extension_of<RoughTransmittance>(m).at;
+    const double at = std::min(cosine, 1.0) * (ROUGH_TRANSMITTANCE_STEPS - 1);
+    const auto step = std::min(static_cast<std::size_t>(at), std::size_t{ROUGH_TRANSMITTANCE_STEPS - 2});
+    const double share = at - static_cast<double>(step);
+    return (1.0 - share) * table[step] + share * table[step + 1];
+}
+
+inline ReferenceValue reference_rough_plastic_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const double eta = m.eta.x;
+    const glm::dvec3 diffuse = to_double(m.diffuse.value);
+    const glm::dvec3 tint = m.flags & MATERIAL_NONLINEAR ? diffuse : glm::dvec3{1.0};
+    const double transmitted =
+        reference_rough_transmittance(m, wi.z) * reference_rough_transmittance(m, wo.z) / (eta * eta);
+    return {diffuse / (1.0 - tint * static_cast<double>(m.diffuse_fresnel_internal)) * (transmitted * wo.z / pi),
+            wo.z / pi};
+}
+
 using ReferenceEval = std::function<ReferenceValue(const ::Material&, const glm::dvec3&, const glm::dvec3&)>;
 
 // By the name of the lobe.
@@ -139,7 +207,10 @@ inline const std::map<std::string, ReferenceEval>& reference_evals() {
     static const std::map<std::string, ReferenceEval> evals{
         {"rough_conductor", reference_rough_conductor}, {"rough_dielectric", reference_rough_dielectric},
         {"phong", reference_phong},                     {"lambert", reference_lambert},
-        {"plastic_base", reference_plastic_base},
+        {"plastic_base", reference_plastic_base},       {"metallic_roughness", reference_metallic_roughness},
+        {"metallic_roughness_base", reference_metallic_roughness_base},
+        {"plastic_base", reference_plastic_base},       {"rough_plastic_coat", reference_rough_plastic_coat},
+        {"rough_plastic_base", reference_rough_plastic_base},
     };
     return evals;
 }
@@ -174,8 +245,8 @@ inline std::vector<DeltaBranch> reference_dielectric(const ::Material& m, const 
 
 inline std::vector<DeltaBranch> reference_thin_dielectric(const ::Material& m, const glm::dvec3& wi) {
     const double r = reference_fresnel_dielectric(std::abs(wi.z), m.eta.x);
-    double pane = r;  // r + t r t + t r^3 t + ..., summed
-    for (double bounce = (1.0 - r) * (1.0 - r) * r; bounce > 1e-18 && r < 1.0; bounce *= r * r) pane += bounce;
+    // r + t r t (1 + r^2 + r^4 + ...) with t = 1 - r
+    const double pane = r + (1.0 - r) * r / (1.0 + r);
     return {{pane, mirrored(wi), to_double(m.specular.value), 1.0},
             {1.0 - pane, -wi, to_double(m.transmission.value), 1.0}};
 }

@@ -39,6 +39,7 @@ struct TestShadowRay {
     glm::vec3 contribution{1};
     std::uint32_t id = 0;
     glm::vec3 origin{0};
+    std::uint32_t from = HIT_NONE;
 };
 
 class StageBench {
@@ -50,7 +51,7 @@ public:
         : scene_(flatten_scene(scene)), buffers_(device()) {
         const Bvh bvh = build_scene_bvh(scene_, 1);
         for (const TriangleBlock& block : bvh.blocks) {
-            primitives_.insert(primitives_.end(), block.primitive, block.primitive + BVH_WIDTH);
+            for (const std::uint32_t primitive : block.primitive) primitives_.push_back(primitive & ~PRIMITIVE_MASKED);
         }
         const FewTriangleSet set = few ? find_few_triangles(bvh) : FewTriangleSet{};
         scene_.features.few_triangles = few;
@@ -130,6 +131,7 @@ public:
             set_vector(QUEUE_SHADOW, layout_[shadow_contribution], i, rays[i].contribution);
             set_bits(QUEUE_SHADOW, layout_[shadow_id], i, rays[i].id);
             set_vector(QUEUE_SHADOW, layout_[shadow_origin], i, rays[i].origin);
+            set_bits(QUEUE_SHADOW, layout_[shadow_from], i, rays[i].from);
         }
         header().count[QUEUE_SHADOW] = static_cast<std::uint32_t>(rays.size());
     }
@@ -138,7 +140,8 @@ public:
         return {get(QUEUE_SHADOW, layout_[shadow_t], slot), get_vector(QUEUE_SHADOW, layout_[shadow_direction], slot),
                 get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot),
                 get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
-                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot)};
+                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot),
+                get_bits(QUEUE_SHADOW, layout_[shadow_from], slot)};
     }
 
     std::vector<std::uint32_t> ids(std::uint32_t queue) {
@@ -176,6 +179,7 @@ private:
         shadow_contribution,
         shadow_id,
         shadow_origin,
+        shadow_from,
         layout_size
     };
     static constexpr const char* layout_source = R"(
@@ -185,8 +189,8 @@ private:
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
-                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN, SHADOW_T,
-                           SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN};
+                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
+                           SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";

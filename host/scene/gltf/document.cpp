@@ -1,0 +1,286 @@
+#include "scene/gltf/document.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scene/file.h"
+
+namespace wavelobe::gltf {
+
+namespace {
+
+constexpr int deepest_nesting = 200;
+constexpr std::uint32_t magic_glb = 0x46546C67;   // glTF
+constexpr std::uint32_t chunk_json = 0x4E4F534A;  // JSON
+constexpr std::uint32_t chunk_binary = 0x004E4942;
+
+std::uint32_t word_at(const std::string& content, std::size_t offset) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, content.data() + offset, sizeof word);
+    return word;
+}
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+std::string percent_decoded(const std::string& uri) {
+    std::string out;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const bool escape = uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
+        if (!escape) {
+            out += uri[i];
+            continue;
+        }
+        out += static_cast<char>(16 * hex_digit(uri[i + 1]) + hex_digit(uri[i + 2]));
+        i += 2;
+    }
+    return out;
+}
+
+int base64_digit(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    if (c == '+' || c == '-') return 62;
+    if (c == '/' || c == '_') return 63;
+    return -1;
+}
+
+}  // namespace
+
+const std::vector<std::string>& supported_extensions() {
+    static const std::vector<std::string> names{"EXT_mesh_gpu_instancing",      "KHR_lights_punctual",     "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",            "KHR_materials_specular",  "KHR_materials_transmission",
+                                                "KHR_materials_unlit",          "KHR_materials_volume",    "KHR_mesh_quantization",
+                                                "KHR_texture_transform"};
+    return names;
+}
+
+Document::Document(const std::string& path)
+    : file(path), folder(std::filesystem::path(path).parent_path().string()), faults(path), content_(read_file(path)) {
+    parse_json(split_container(content_));
+    root = Element(&json_, "", &faults);
+    check_version();
+    check_extensions();
+    accessors = root.objects("accessors");
+    materials = root.objects("materials");
+    textures = root.objects("textures");
+    images = root.objects("images");
+    samplers = root.objects("samplers");
+    meshes = root.objects("meshes");
+    nodes = root.objects("nodes");
+    skins = root.objects("skins");
+    cameras = root.objects("cameras");
+    animations = root.objects("animations");
+    scenes = root.objects("scenes");
+    read_buffers();
+    read_views();
+}
+
+void Document::warn(const std::string& text) {
+    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+}
+
+// The JSON of a .gltf or .glb; remembers the binary chunk.
+std::string_view Document::split_container(const std::string& content) {
+    const auto refuse = [&](std::size_t offset, const std::string& message) {
+        throw InputError(Fault{file, 0, 0, fmt::format("byte {}", offset), message, "the file may be cut short: fetch it again"});
+    };
+    if (content.size() < 4 || word_at(content, 0) != magic_glb) return content;
+    if (content.size() < 20) refuse(0, fmt::format("a binary glTF of {} bytes; its header alone takes 20", content.size()));
+    const std::uint32_t version = word_at(content, 4);
+    const std::size_t length = word_at(content, 8);
+    if (version != 2) refuse(4, fmt::format("binary glTF of version {}; expected 2", version));
+    if (length > content.size())
+        refuse(8, fmt::format("the file claims {} bytes and has {}", length, content.size()));
+    if (length < content.size()) warn(fmt::format("{}: {} bytes after the end of the binary glTF are passed over", file, content.size() - length));
+
+    std::string_view text;
+    std::size_t offset = 12;
+    for (int chunk = 0; offset + 8 <= length; ++chunk) {
+        const std::size_t size = word_at(content, offset);
+        const std::uint32_t type = word_at(content, offset + 4);
+        if (size > length - offset - 8)
+            refuse(offset, fmt::format("a chunk of {} bytes where {} are left", size, length - offset - 8));
+        const std::string_view bytes(content.data() + offset + 8, size);
+        if (chunk == 0) {
+            if (type != chunk_json) refuse(offset + 4, fmt::format("the first chunk is of type 0x{:08x}; expected JSON", type));
+            text = bytes;
+        } else if (chunk == 1 && type == chunk_binary) {
+            binary_chunk_ = bytes;
+        }
+        offset += 8 + size;
+        offset += (4 - offset % 4) % 4;
+    }
+    if (text.empty()) refuse(12, "no JSON chunk");
+    return text;
+}
+
+void Document::parse_json(std::string_view text) {
+    const auto place = [&](std::size_t byte) {  // 1-based, of the first character that does not fit
+        const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
+        const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+        const std::size_t start = before.rfind('\n');
+        return std::pair(static_cast<int>(line), static_cast<int>(before.size() - (start == std::string_view::npos ? 0 : start + 1)) + 1);
+    };
+    const auto callback = [&](int depth, Json::parse_event_t, Json&) {
+        if (depth > deepest_nesting)
+            throw InputError(Fault{file, 0, 0, "", fmt::format("JSON nested deeper than {} levels", deepest_nesting), "no glTF needs that"});
+        return true;
+    };
+    try {
+        json_ = Json::parse(text, callback);
+    } catch (const Json::parse_error& error) {
+        const auto [line, column] = place(error.byte);
+        std::string what = error.what();
+        const std::size_t start = what.find("syntax error");
+        if (start != std::string::npos) what = what.substr(start);
+        throw InputError(Fault{file, line, column, "", "not valid JSON: " + what, "expected a glTF 2.0 document"});
+    } catch (const Json::exception& error) {
+        throw InputError(Fault{file, 0, 0, "", std::string("not valid JSON: ") + error.what(), "expected a glTF 2.0 document"});
+    }
+    if (!json_.is_object())
+        throw InputError(Fault{file, 1, 1, "", "is " + describe(json_) + "; expected the object of a glTF 2.0 document", ""});
+}
+
+void Document::check_version() {
+    const Element asset = root.object("asset");
+    if (!asset.present()) {
+        root.fault("has no `asset`, which states the glTF version", "expected \"asset\": {\"version\": \"2.0\"}");
+        return;
+    }
+    asset.require("version");
+    const std::string version = asset.text("version", "2.0");
+    const std::string least = asset.text("minVersion", "2.0");
+    if (!version.starts_with("2.")) asset.fault("glTF version " + version + "; expected 2.0", "export it as glTF 2.0");
+    else if (least != "2.0") asset.fault("asks for glTF " + least + "; this reader knows 2.0", "export it as glTF 2.0");
+}
+
+void Document::check_extensions() {
+    const auto& known = supported_extensions();
+    const auto is_known = [&](const std::string& name) { return std::find(known.begin(), known.end(), name) != known.end(); };
+    for (const std::string& name : root.texts("extensionsRequired")) {
+        if (is_known(name)) continue;
+        faults.add("/extensionsRequired", "the extension " + name + " is required, and not supported",
+                   fmt::format("export without it; supported are {}", fmt::join(known, ", ")));
+    }
+    std::vector<std::string> ignored;
+    for (const std::string& name : root.texts("extensionsUsed"))
+        if (!is_known(name)) ignored.push_back(name);
+    if (!ignored.empty()) warn(fmt::format("{}: extensions passed over: {}", file, fmt::join(ignored, ", ")));
+}
+
+std::optional<std::string> Document::resolve(const std::string& uri, const std::string& path) {
+    const std::string name = percent_decoded(uri);
+    const std::size_t colon = name.find(':');
+    const bool scheme = colon != std::string::npos && colon > 1 && name.find('/') > colon;
+    if (scheme || name.starts_with("//")) {
+        faults.add(path, "names `" + uri.substr(0, 200) + "`; nothing is fetched", "store the file beside the scene and name it by a relative path");
+        return {};
+    }
+    if (name.empty() || name.find('\0') != std::string::npos || std::filesystem::path(name).is_absolute()) {
+        faults.add(path, "names `" + uri.substr(0, 200) + "`; expected a relative path", "store the file beside the scene");
+        return {};
+    }
+    return (std::filesystem::path(folder) / name).string();
+}
+
+std::optional<std::string> Document::decode_data_uri(const std::string& uri, const std::string& path) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string::npos) {
+        faults.add(path, "a data URI without a comma before its data", "");
+        return {};
+    }
+    if (uri.substr(0, comma).find(";base64") == std::string::npos) return percent_decoded(uri.substr(comma + 1));
+    std::string out;
+    out.reserve((uri.size() - comma) / 4 * 3 + 3);
+    std::uint32_t bits = 0;
+    int count = 0;
+    std::size_t end = uri.size();
+    while (end > comma + 1 && uri[end - 1] == '=') --end;
+    for (std::size_t i = comma + 1; i < end; ++i) {
+        const int digit = base64_digit(uri[i]);
+        if (digit < 0) {
+            faults.add(path, fmt::format("character {} of the data URI is not base64", i), "");
+            return {};
+        }
+        bits = (bits << 6) | static_cast<std::uint32_t>(digit);
+        if (++count % 4 == 0) out.append({static_cast<char>(bits >> 16), static_cast<char>(bits >> 8), static_cast<char>(bits)});
+    }
+    if (count % 4 == 1) {
+        faults.add(path, "the base64 of the data URI ends inside a byte", "the file may be cut short");
+        return {};
+    }
+    if (count % 4 == 2) out += static_cast<char>(bits >> 4);
+    if (count % 4 == 3) out.append({static_cast<char>(bits >> 10), static_cast<char>(bits >> 2)});
+    return out;
+}
+
+std::string Document::read_buffer(const Element& buffer, std::size_t index) {
+    const std::string uri = buffer.text("uri");
+    const std::string path = buffer.path() + "/uri";
+    if (is_data_uri(uri)) return decode_data_uri(uri, path).value_or("");
+    const auto name = resolve(uri, path);
+    if (!name) return {};
+    try {
+        return read_file(*name);
+    } catch (const InputError& error) {
+        faults.add(error, fmt::format("/buffers/{}", index));
+        return {};
+    }
+}
+
+void Document::read_buffers() {
+    const std::vector<Element> list = root.objects("buffers");
+    owned_.reserve(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const Element& buffer = list[i];
+        buffer.require("byteLength");
+        const std::size_t before = faults.size();
+        const auto length = static_cast<std::size_t>(buffer.whole("byteLength", 0, 1, std::int64_t{1} << 50));
+        std::string_view bytes;
+        if (buffer.has("uri")) {
+            bytes = owned_.emplace_back(read_buffer(buffer, i));
+        } else if (i == 0 && binary_chunk_) {
+            bytes = *binary_chunk_;
+        } else if (buffer.present()) {
+            buffer.fault("has no `uri`, and the file no binary chunk that would take its place");
+        }
+        if (faults.size() == before && bytes.size() < length)
+            buffer.fault(fmt::format("claims {} bytes and has {}", length, bytes.size()), "the file may be cut short");
+        readable_.push_back(faults.size() == before);
+        buffers_.push_back(readable_.back() ? bytes.substr(0, length) : std::string_view());
+    }
+}
+
+void Document::read_views() {
+    for (const Element& view : root.objects("bufferViews")) {
+        view.require("buffer");
+        view.require("byteLength");
+        const std::size_t before = faults.size();
+        const auto buffer = view.index("buffer", buffers_.size(), "buffers");
+        const auto offset = static_cast<std::size_t>(view.whole("byteOffset", 0, 0, std::int64_t{1} << 50));
+        const auto length = static_cast<std::size_t>(view.whole("byteLength", 0, 1, std::int64_t{1} << 50));
+        const auto stride = static_cast<std::size_t>(view.whole("byteStride", 0, 0, 252));
+        BufferView out;
+        if (buffer && faults.size() == before && readable_[*buffer]) {
+            const std::string_view bytes = buffers_[*buffer];
+            if (offset > bytes.size() || length > bytes.size() - offset) {
+                view.fault(fmt::format("bytes {} to {} of buffer {}, which has {}", offset, offset + length, *buffer, bytes.size()));
+            } else {
+                out = {bytes.substr(offset, length), stride, true};
+            }
+        }
+        views.push_back(out);
+    }
+}
+
+}  // namespace wavelobe::gltf
