@@ -1,5 +1,6 @@
 #include "tables/environment_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -40,6 +41,17 @@ double cell_solid_angle(std::size_t row, std::size_t rows, std::size_t columns) 
     return 2.0 * std::sin(middle) * std::sin(0.5 * step) * 2.0 * std::numbers::pi / static_cast<double>(columns);
 }
 
+// Takes the average radiance off each cell; an even picture keeps its weights.
+void compensate(std::vector<double>& weight, double luminance_integral, std::size_t rows, std::size_t columns) {
+    const double average = luminance_integral / (4.0 * std::numbers::pi);
+    std::vector<double> rest(weight.size());
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        rest[i] = std::max(weight[i] - average * cell_solid_angle(i / columns, rows, columns), 0.0);
+    }
+    // Less than this share is rounding.
+    if (std::accumulate(rest.begin(), rest.end(), 0.0) > 1e-6 * luminance_integral) weight = std::move(rest);
+}
+
 }  // namespace
 
 Bitmap with_three_rows(Bitmap image) {
@@ -52,7 +64,7 @@ Bitmap with_three_rows(Bitmap image) {
     return image;
 }
 
-EnvironmentTable build_environment_table(const Bitmap& image, const std::string& name) {
+EnvironmentTable build_environment_table(const Bitmap& image, const std::string& name, bool compensated) {
     if (image.width < 1 || image.height < 2) {
         throw InputError(Fault{.file = name,
                                .element = "envmap",
@@ -78,6 +90,7 @@ EnvironmentTable build_environment_table(const Bitmap& image, const std::string&
     table.cell_columns = static_cast<Uint32>(columns);
     table.cell_rows = static_cast<Uint32>(rows);
     table.luminance_integral = std::accumulate(weight.begin(), weight.end(), 0.0);
+    if (compensated) compensate(weight, table.luminance_integral, rows, columns);
     if (table.luminance_integral <= 0.0) {
         for (std::size_t i = 0; i < weight.size(); ++i) weight[i] = cell_solid_angle(i / columns, rows, columns);
     }

@@ -22,6 +22,10 @@ Bitmap with_three_rows(Bitmap image);
 
 // A cell's probability follows the mean luminance of its corners times its solid angle; a black picture is sampled evenly.
 // Throws InputError naming `name` and the first texel that is negative or not finite, and for fewer than two rows.
-EnvironmentTable build_environment_table(const Bitmap& image, const std::string& name = {});
+//
+// `compensated`: probabilities follow what a cell has above the average radiance over the sphere, and cells below it have
+// none, for estimators that weigh these samples against others that reach every direction. Karlik, Sik, Vevoda, Skrivan,
+// Krivanek 2019, "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling".
+EnvironmentTable build_environment_table(const Bitmap& image, const std::string& name = {}, bool compensated = false);
 
 }  // namespace wavelobe

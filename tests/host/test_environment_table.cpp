@@ -169,6 +169,23 @@ TEST(LightPower, SpotIntegratesItsFalloff) {
     }
 }
 
+// Cells follow what they have above the average over the sphere; an even picture stays as it is.
+TEST(EnvironmentTable, CompensatedLeavesOutWhatIsBelowAverage) {
+    const Bitmap image = random_picture(16, 9);
+    const std::vector<double> plain = cell_probabilities(build_environment_table(image));
+    const std::vector<double> rest = cell_probabilities(build_environment_table(image, {}, true));
+    std::vector<double> expected(plain.size());
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        const double top = std::cos(pi * static_cast<double>(i / 16) / 8.0);
+        const double bottom = std::cos(pi * static_cast<double>(i / 16 + 1) / 8.0);
+        expected[i] = std::max(plain[i] - 0.5 * (top - bottom) / 16.0, 0.0);
+    }
+    const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
+    for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(rest[i], expected[i] / sum, 1e-6);
+    const Bitmap even = picture(16, 9, [](int, int) { return Rgb(2.0F); });
+    EXPECT_EQ(build_environment_table(even, {}, true).density, build_environment_table(even).density);
+}
+
 TEST(LightPower, EnvironmentsPassTheBoundingSphere) {
     const double y = luminance(Rgb(2.0F));
     const double expected = 4.0 * pi * pi * 9.0 * y;
