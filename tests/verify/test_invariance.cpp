@@ -119,8 +119,8 @@ TEST(LongSums, MeanOfAPixel) {
     Scene scene = empty_scene(1);
     scene.emitters.emplace_back(ConstantEmitter{Rgb{0.1F, 1e-30F, 1e30F}});
     const int spp = quick_or_full(1000000, 10000000);
-    const Image image = picture(scene, spp).image;
     Claim claim("Numerical stability", "Mean of the samples of one pixel: error from accumulation", "relative");
+    const Image image = picture(scene, spp).image;
     const glm::dvec3 expected{0.1F, 1e-30F, 1e30F};
     for (int c = 0; c < 3; ++c) claim.observe(std::abs(pixel(image, 0)[c] / expected[c] - 1.0));
     claim.count(static_cast<std::uint64_t>(spp));
