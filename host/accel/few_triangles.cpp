@@ -16,6 +16,7 @@ FewTriangleSet find_few_triangles(const Bvh& bvh) {
         for (std::uint32_t lane = 0; lane < BVH_WIDTH; ++lane) {
             FewTriangle triangle{};
             triangle.slot = static_cast<std::uint32_t>(b) * BVH_WIDTH + lane;
+            triangle.primitive = block.primitive[lane];
             bool present = false;  // absent triangles are all zero
             std::array<std::array<float, 3>, 3> corners{};
             for (std::size_t row = 0; row < 9; ++row) {

@@ -17,19 +17,14 @@ constexpr double line_seconds = 2.0;           // a log gets a line every tenth 
 constexpr double longest_silence_seconds = 30.0;
 constexpr int bar_columns = 30;                // with the text below 80 columns
 
-double share_done(const Progress& progress) {
-    if (progress.samples_total == 0) return 1.0;
-    return static_cast<double>(progress.samples_done) / static_cast<double>(progress.samples_total);
-}
-
 }  // namespace
 
 std::string progress_text(const Progress& progress) {
-    const double share = share_done(progress);
+    const double share = progress.share;
     std::string text = fmt::format("{:3.0f} %", 100.0 * share);
     if (progress.samples_done == 0 || !(progress.seconds > 0.0)) return text;
     text += fmt::format("  {} samples/s", format_millions(static_cast<double>(progress.samples_done) / progress.seconds));
-    text += fmt::format("  {} left", format_clock(progress.seconds * (1.0 - share) / share));
+    if (share > 0.0) text += fmt::format("  {} left", format_clock(progress.seconds * (1.0 - share) / share));
     return text;
 }
 
@@ -38,7 +33,7 @@ ProgressDisplay::ProgressDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(S
 void ProgressDisplay::update(const Progress& progress) {
     if (quiet_) return;
     const double elapsed = progress.seconds - last_seconds_;
-    const double share = share_done(progress);
+    const double share = progress.share;
     if (terminal_) {
         if (drawn_ && elapsed < redraw_seconds) return;
         const int filled = std::clamp(static_cast<int>(share * bar_columns), 0, bar_columns);

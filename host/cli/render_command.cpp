@@ -33,10 +33,15 @@ struct RenderOptions {
     std::optional<std::uint32_t> seed;
     int threads = 0;
     Driver driver = Driver::one_kernel;
+    double target_error = 0.0;  // 0: none
+    double time_limit = 0.0;    // 0: none
     std::string device;
     bool quiet = false;
     bool verbose = false;
 };
+
+// Where an error or the time ends a render.
+constexpr int most_samples = 1 << 20;
 
 class Stopwatch {
 public:
@@ -73,7 +78,11 @@ void check_outputs(const RenderOptions& options) {
 
 Scene read_scene(const RenderOptions& options) {
     Scene scene = options.scene.read();
-    if (options.samples_per_pixel) scene.sample_count = *options.samples_per_pixel;
+    if (options.samples_per_pixel) {
+        scene.sample_count = *options.samples_per_pixel;
+    } else if (options.target_error > 0.0 || options.time_limit > 0.0) {
+        scene.sample_count = most_samples;
+    }
     if (options.max_depth) scene.integrator.max_depth = *options.max_depth;
     if (options.seed) scene.seed = *options.seed;
     if (const auto window = parse_window(options.crop)) set_crop_window(scene.film, *window);
@@ -108,12 +117,15 @@ int run(const RenderOptions& options) {
     settings.samples_per_pixel = scene.sample_count;
     settings.seed = scene.seed;
     settings.driver = options.driver;
+    settings.target_error = options.target_error;
+    settings.time_limit = options.time_limit;
     Renderer renderer(device, scene, settings);
     if (interrupted()) return nothing_rendered();
 
     if (!options.quiet) {
-        std::fprintf(stderr, "rendering %d x %d pixels, %d samples each\n", scene.film.crop_width, scene.film.crop_height,
-                     scene.sample_count);
+        const bool open_end = options.target_error > 0.0 || options.time_limit > 0.0;
+        std::fprintf(stderr, "rendering %d x %d pixels, %s%d samples each\n", scene.film.crop_width,
+                     scene.film.crop_height, open_end ? "at most " : "", scene.sample_count);
     }
     ProgressDisplay display(options.quiet);
     const bool complete = renderer.render([&display](const Progress& progress) {
@@ -156,6 +168,11 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
     add("-o,--output", options->exr_path, "OUT.exr", "Picture to write: linear RGB, OpenEXR")->required();
     add("--png", options->png_path, "OUT.png", "Also write it as 8-bit sRGB, clamped");
     add("--spp", options->samples_per_pixel, "N", "Samples a pixel (default: the scene's)")->check(whole_number(1, 1 << 24));
+    add("--target-error", options->target_error, "E",
+        "Stop each tile of the picture when its estimated relMSE is below E (--spp is then the most it may take)")
+        ->check(CLI::PositiveNumber);
+    add("--time-limit", options->time_limit, "S", "Stop after S seconds of rendering (--spp is then the most it may take)")
+        ->check(CLI::PositiveNumber);
     add("--seed", options->seed, "N", "Another seed gives other noise (default: the scene's)")
         ->check(whole_number(0, UINT32_MAX));
     add("--threads", options->threads, "N", "Compute threads (default: one a core)")->check(whole_number(1, 1024));

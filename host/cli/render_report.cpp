@@ -17,9 +17,11 @@ double samples_per_second(const RenderStats& stats) {
 
 std::string closing_line(const RenderReport& report) {
     const RenderStats& stats = report.stats;
-    return fmt::format("render {:.3f} s, setup {:.3f} s, {} samples, {} samples/s", stats.render_seconds,
-                       stats.setup_seconds(), format_millions(static_cast<double>(stats.samples)),
-                       format_millions(samples_per_second(stats)));
+    std::string line = fmt::format("render {:.3f} s, setup {:.3f} s, {} samples, {} samples/s", stats.render_seconds,
+                                   stats.setup_seconds(), format_millions(static_cast<double>(stats.samples)),
+                                   format_millions(samples_per_second(stats)));
+    if (stats.estimated_error) line += fmt::format(", estimated relMSE {:.3g}", *stats.estimated_error);
+    return line;
 }
 
 std::string report_table(const RenderReport& report) {
@@ -56,6 +58,7 @@ std::string report_json(const RenderReport& report) {
     json["setup_seconds"] = stats.setup_seconds();
     json["samples"] = stats.samples;
     json["samples_per_second"] = samples_per_second(stats);
+    if (stats.estimated_error) json["estimated_relmse"] = *stats.estimated_error;
     json["nan_samples"] = stats.nan_samples;
     json["nan_examples"] = Json::array();
     for (const NonFiniteSample& sample : stats.nan_examples) {

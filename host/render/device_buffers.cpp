@@ -16,11 +16,24 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
     return values.size() * sizeof(T);
 }
 
+// Marks the primitives whose opacity rays ask for.
+void mark_masked(Bvh& bvh, const DeviceScene& scene) {
+    const auto mark = [&scene](std::uint32_t& entry, std::size_t primitive) {
+        const DeviceShape& shape = scene.shapes[scene.primitive_shapes[primitive]];
+        if ((shape.flags & SHAPE_MASKED) != 0) entry |= PRIMITIVE_MASKED;
+    };
+    for (TriangleBlock& block : bvh.blocks) {
+        for (std::uint32_t& primitive : block.primitive) mark(primitive, primitive);
+    }
+    for (std::uint32_t& entry : bvh.analytic_order) mark(entry, scene.triangles.size() + entry);
+}
+
 }  // namespace
 
 Bvh build_scene_bvh(const DeviceScene& scene, int threads) {
     const BvhQuality quality = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
     Bvh bvh = build_bvh(scene.triangles, scene.analytic_bounds, quality, threads);
+    if (scene.features.masks) mark_masked(bvh, scene);
     // Stages read block 0 in lanes that hit no triangle.
     if (bvh.blocks.empty()) bvh.blocks.emplace_back();
     return bvh;
@@ -31,7 +44,8 @@ std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
         std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height * sizeof(FilmPixel);
     return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
            bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.analytics) +
-           bytes_of(scene.materials) + bytes_of(scene.textures) + bytes_of(scene.texels) + bytes_of(scene.lights) +
+           bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) + bytes_of(scene.texels) +
+           bytes_of(scene.lights) + bytes_of(scene.light_tree) +
            bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
 }
 
@@ -56,12 +70,14 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("primitive_shapes", scene.primitive_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.primitive_shapes);
     add("shapes", scene.shapes.empty() ? std::vector<DeviceShape>(1) : scene.shapes);
     add("materials", scene.materials.empty() ? std::vector<DeviceMaterial>(1) : scene.materials);
+    add("opacities", scene.opacities);
     add("normals", scene.normals);
     add("uvs", scene.uvs);
     add("analytics", scene.analytics);
     add("textures", scene.textures);
     add("texels", scene.texels.empty() && !scene.textures.empty() ? std::vector<float>(1) : scene.texels);
     add("lights", scene.lights);
+    add("light_tree", scene.light_tree);
     add("environment", scene.environment);
     add("environment_texels", scene.environment_texels);
     add("environment_alias", scene.environment_alias);
@@ -69,7 +85,7 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
-    add_zeros<FilmPixel>("film", pixels);
+    add_zeros<FilmPixel>("film", pixels * (scene.features.error_estimate ? 2 : 1));
 }
 
 void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {

@@ -32,8 +32,9 @@ public:
     // Makes the kernels ready for their first launch.
     virtual void prepare(const Program& program) = 0;
 
-    // Some more of the picture: as much as the host may leave unattended, a fraction of a second.
-    virtual void step() = 0;
+    // Some more of the picture: as much as the host may leave unattended, a fraction of a second, and no more than `seconds`
+    // as far as the driver can tell.
+    virtual void step(double seconds) = 0;
 
     // Until the device has finished.
     virtual void wait() {}

@@ -83,7 +83,11 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define("HAS_MASKS", f.masks);
+    out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
     out.define("HAS_DIFFUSE_LOBES", f.has_lobe_class(LOBE_CLASS_DIFFUSE));
@@ -92,6 +96,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ENVIRONMENT", f.has_environment());
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
+    out.define("HAS_LIGHT_TREE", f.light_tree);
     out.define("HAS_FEW_TRIANGLES", f.few_triangles);
     if (!f.few_triangles) out.define_unsigned("BVH_STACK", f.bvh_stack);
 }
@@ -180,6 +185,10 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(error_estimate, "error_estimate");
+    add(masks, "masks");
+    add(veiled_emitters, "veiled_emitters");
+    add(light_tree, "light_tree");
     add(few_triangles, "few_triangles");
     return out;
 }
@@ -232,15 +241,15 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    constexpr std::size_t fields_without_origin = RAY_FIELDS - 3;
-    const std::size_t traced = features.analytic ? RAY_FIELDS : fields_without_origin;
+    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0);
+    const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;
     if (features.has_surface_lights()) ++queues;
     for (const std::uint32_t c : {LOBE_CLASS_DELTA, LOBE_CLASS_GLOSSY, LOBE_CLASS_DIFFUSE}) {
         if (features.has_lobe_class(c)) ++queues;
     }
-    return stride * (RAY_FIELDS + queues * traced + SHADOW_FIELDS) +
+    return stride * (fields + queues * traced + SHADOW_FIELDS) +
            std::size_t{3} * TILE_PIXELS * BLOCK_SAMPLES;
 }
 

@@ -4,6 +4,7 @@
 
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
+#include "render/presence.h"
 #include "scene/fault.h"
 #include "tables/filter_table.h"
 
@@ -28,15 +29,22 @@ public:
 
     DeviceScene run() {
         for (const Shape& shape : scene_.shapes) {
-            if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) add_mesh(shape, *mesh);
+            const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+            if (mesh != nullptr && is_there(shape)) add_mesh(shape, *mesh);
         }
         // Analytic shapes follow all triangles in the numbering of primitives.
         for (const Shape& shape : scene_.shapes) {
-            if (const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry)) add_analytic(shape, *analytic);
+            const auto* analytic = std::get_if<AnalyticShape>(&shape.geometry);
+            if (analytic != nullptr && is_there(shape)) add_analytic(shape, *analytic);
         }
         const Bounds bounds = bounds_of_scene(out_);
         const double radius = out_.primitive_shapes.empty() ? 1.0 : 0.5 * glm::length(glm::dvec3(bounds.upper) - glm::dvec3(bounds.lower));
-        for (const Emitter& emitter : scene_.emitters) lights_.add_emitter(emitter, radius);
+        // Lights with a place go before those at infinity.
+        for (const bool placed : {true, false}) {
+            for (const Emitter& emitter : scene_.emitters) {
+                if (LightFlattener::has_place(emitter) == placed) lights_.add_emitter(emitter, radius);
+            }
+        }
         lights_.finish();
         set_parameters();
         out_.filter_table = build_filter_table(scene_.film.filter);
@@ -49,6 +57,7 @@ private:
         FeatureSet& f = out_.features;
         f.textures = !out_.textures.empty();
         f.hide_emitters = scene_.integrator.hide_emitters;
+        if (!f.masks && !f.veiled_emitters) out_.opacities = {};
         f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
@@ -60,7 +69,12 @@ private:
         return shape.emitter && (shape.emitter->radiance.texture || shape.emitter->radiance.value != Rgb{0.0F});
     }
 
-    // The record of a shape with its materials; geometry is added by the caller.
+    // What is nowhere and does not shine is left out.
+    bool is_there(const Shape& shape) {
+        return emits(shape) || presence_.find(shape.material.opacity) != Presence::absent;
+    }
+
+    // The record of a shape with its materials and its opacity; geometry is added by the caller.
     DeviceShape device_shape(const Shape& shape) {
         DeviceShape s{};
         s.front_material = materials_.add(shape.material.front);
@@ -81,6 +95,13 @@ private:
             s.flags |= SHAPE_EMITS;
             s.first_light = static_cast<std::uint32_t>(out_.lights.size());
             f.textured_emitters = f.textured_emitters || shape.emitter->radiance.texture != nullptr;
+        }
+        if (presence_.find(shape.material.opacity) == Presence::whole) {
+            out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F});
+        } else {
+            out_.opacities.push_back(materials_.opacity(shape.material.opacity));
+            s.flags |= emits(shape) ? SHAPE_VEILED : SHAPE_MASKED;
+            (emits(shape) ? f.veiled_emitters : f.masks) = true;
         }
         return s;
     }
@@ -136,6 +157,7 @@ private:
     DeviceScene out_;
     MaterialFlattener materials_;
     LightFlattener lights_;
+    PresenceFinder presence_;
 };
 
 // Bounds of the unit shapes under an affine map, a few roundings wider than exact.
@@ -186,13 +208,12 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     const double area = analytic_area(analytic);
     a.area = static_cast<float>(area);
     a.radius = static_cast<float>(glm::length(glm::dvec3(analytic.to_world[0])));
-    if (emits(shape)) {
-        lights_.add_analytic(*shape.emitter, lights[kind], static_cast<std::uint32_t>(out_.analytics.size()), area);
-    }
-    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
-    out_.shapes.push_back(s);
+    const auto index = static_cast<std::uint32_t>(out_.analytics.size());
     out_.analytics.push_back(a);
     out_.analytic_bounds.push_back(analytic_bounds(analytic));
+    if (emits(shape)) lights_.add_analytic(*shape.emitter, lights[kind], index, area, out_.analytic_bounds.back());
+    out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
+    out_.shapes.push_back(s);
 }
 
 void Flattener::set_parameters() {
@@ -216,6 +237,7 @@ void Flattener::set_parameters() {
     p.max_depth = scene_.integrator.max_depth < 0 ? 0x7fffffffU : static_cast<std::uint32_t>(scene_.integrator.max_depth);
     p.rr_depth = static_cast<std::uint32_t>(std::max(scene_.integrator.rr_depth, 1));
     p.light_count = static_cast<std::uint32_t>(out_.lights.size());
+    p.finite_light_count = lights_.finite_count();
     p.triangle_count = static_cast<std::uint32_t>(out_.triangles.size());
 }
 

@@ -16,6 +16,7 @@ namespace wavelobe {
 using DeviceMaterial = ::Material;
 using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
+using DeviceOpacity = ::Opacity;
 
 struct DeviceScene {
     FeatureSet features;
@@ -32,11 +33,13 @@ struct DeviceScene {
 
     // appearance
     std::vector<DeviceMaterial> materials;
+    std::vector<DeviceOpacity> opacities;  // one a shape, or none at all
     std::vector<DeviceTexture> textures;
     std::vector<float> texels;
 
     // light
-    std::vector<Light> lights;
+    std::vector<Light> lights;      // with a tree: those with a place first
+    std::vector<LightNode> light_tree;  // none if one light, or none with a place, is all there is
     std::vector<Environment> environment;  // none or one
     std::vector<float> environment_texels;
     std::vector<AliasEntry> environment_alias;

@@ -1,6 +1,7 @@
 #include "render/flatten_lights.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "tables/alias_table.h"
 #include "tables/environment_table.h"
@@ -19,6 +20,17 @@ Light light_of(LightIndex kind, const TexturedRgb& radiance) {
     return light;
 }
 
+LightBounds bounds_about(std::initializer_list<glm::vec3> points) {
+    LightBounds b;
+    b.lower = glm::dvec3(*points.begin());
+    b.upper = b.lower;
+    for (const glm::vec3& p : points) {
+        b.lower = glm::min(b.lower, glm::dvec3(p));
+        b.upper = glm::max(b.upper, glm::dvec3(p));
+    }
+    return b;
+}
+
 }  // namespace
 
 Affine affine(const glm::mat4& m) {
@@ -33,6 +45,11 @@ void LightFlattener::add_light(const Light& light, double power) {
     out_.lights.push_back(light);
     out_.features.light_kinds |= 1U << light.kind;
     powers_.push_back(power);
+}
+
+void LightFlattener::add_placed_light(const Light& light, double power, const LightBounds& bounds) {
+    add_light(light, power);
+    bounds_.push_back(bounds);
 }
 
 void LightFlattener::add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh) {
@@ -63,19 +80,67 @@ void LightFlattener::add_planar(const AreaEmitter& emitter, const TriangleMesh& 
         light.uv[2 * i] = uv.x;
         light.uv[2 * i + 1] = uv.y;
     }
-    add_light(light, area_power(emitter, area));
+    LightBounds bounds = bounds_about({p, p + e1, p + e2});
+    if (kind == LIGHT_PARALLELOGRAM) bounds = bounds_about({p, p + e1, p + e2, p + e1 + e2});
+    bounds.axis = glm::normalize(cross);
+    bounds.emission = 0.5 * std::numbers::pi;
+    bounds.intensity = area * mean_luminance(emitter.radiance);
+    add_placed_light(light, area_power(emitter, area), bounds);
 }
 
-void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area) {
+void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
+                                  const Bounds& box) {
     Light light = light_of(kind, materials_.rgb(emitter.radiance));
     light.analytic = analytic;
     light.inverse_area = static_cast<float>(1.0 / area);
-    add_light(light, area_power(emitter, area));
+    LightBounds bounds = bounds_about({box.lower, box.upper});
+    const Analytic& shape = out_.analytics[analytic];
+    // The greatest share of its area that any direction sees.
+    double seen = 1.0;
+    bounds.spread = std::numbers::pi;
+    if (kind == LIGHT_SPHERE) seen = 0.25;
+    if (kind == LIGHT_CYLINDER) seen = 1.0 / std::numbers::pi;
+    if (kind == LIGHT_DISK) {
+        // Normals go with the inverse transpose.
+        const float* inverse = shape.to_object.m + 8;
+        bounds.axis = glm::normalize(glm::dvec3(inverse[0], inverse[1], inverse[2])) * static_cast<double>(shape.flip);
+        bounds.spread = 0.0;
+    }
+    bounds.emission = 0.5 * std::numbers::pi;
+    bounds.intensity = area * seen * mean_luminance(emitter.radiance);
+    add_placed_light(light, area_power(emitter, area), bounds);
+}
+
+bool LightFlattener::has_place(const Emitter& emitter) {
+    return std::holds_alternative<PointEmitter>(emitter) || std::holds_alternative<SpotEmitter>(emitter);
 }
 
 void LightFlattener::finish() {
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
+    if (bounds_.size() > 1) {
+        build_tree();
+    } else {
+        build_alias();
+    }
+}
+
+void LightFlattener::build_tree() {
+    out_.features.light_tree = true;
+    LightTree tree = build_light_tree(bounds_);
+    for (std::size_t i = 0; i < bounds_.size(); ++i) {
+        out_.lights[i].selection_probability = 0.0F;
+        out_.lights[i].trail = tree.trails[i];
+    }
+    out_.light_tree = std::move(tree.nodes);
+    // Each light at infinity counts as much as the whole tree.
+    const std::size_t infinite = out_.lights.size() - bounds_.size();
+    for (std::size_t i = bounds_.size(); i < out_.lights.size(); ++i) {
+        out_.lights[i].selection_probability = 1.0F / static_cast<float>(infinite + 1);
+    }
+}
+
+void LightFlattener::build_alias() {
     const std::vector<AliasEntry> alias = build_alias_table(powers_);
     double sum = 0.0;
     for (const double power : powers_) sum += power;
@@ -119,7 +184,11 @@ void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius)
 void LightFlattener::add(const PointEmitter& e, double power) {
     Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(e.position);
-    add_light(light, power);
+    LightBounds bounds = bounds_about({e.position});
+    bounds.spread = std::numbers::pi;
+    bounds.emission = 0.5 * std::numbers::pi;
+    bounds.intensity = luminance(e.intensity);
+    add_placed_light(light, power, bounds);
 }
 
 void LightFlattener::add(const SpotEmitter& e, double power) {
@@ -128,7 +197,11 @@ void LightFlattener::add(const SpotEmitter& e, double power) {
     light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
     light.cos_cutoff = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.cutoff_degrees))));
     light.cos_beam = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.beam_width_degrees))));
-    add_light(light, power);
+    LightBounds bounds = bounds_about({glm::vec3(e.to_world[3])});
+    bounds.axis = glm::normalize(glm::dvec3(e.to_world[2]));
+    bounds.emission = glm::radians(static_cast<double>(e.cutoff_degrees));
+    bounds.intensity = luminance(e.intensity);
+    add_placed_light(light, power, bounds);
 }
 
 void LightFlattener::add(const DirectionalEmitter& e, double power) {

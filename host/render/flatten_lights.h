@@ -2,6 +2,7 @@
 #pragma once
 
 #include "render/flatten_materials.h"
+#include "tables/light_tree.h"
 
 namespace wavelobe {
 
@@ -14,16 +15,24 @@ public:
 
     // A light for each triangle, or one for a parallelogram.
     void add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh);
-    void add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area);
+    void add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
+                      const Bounds& bounds);
     // Those without a shape; `radius` is that of the scene's bounding sphere. Black ones are left out.
     void add_emitter(const Emitter& emitter, double radius);
-    // Probabilities and the alias table, by power; alike if no light has any.
+    // How lights are chosen: by a tree if several have a place, else by an alias table over power (alike if none has any).
     void finish();
+    // Not at infinity.
+    static bool has_place(const Emitter& emitter);
+    // How many have one; they come first if add_emitter was called for them first.
+    std::uint32_t finite_count() const { return static_cast<std::uint32_t>(bounds_.size()); }
 
 private:
     void add_planar(const AreaEmitter& emitter, const TriangleMesh& mesh, LightIndex kind, const TexturedRgb& radiance,
                     const glm::uvec3& t);
     void add_light(const Light& light, double power);
+    void add_placed_light(const Light& light, double power, const LightBounds& bounds);
+    void build_tree();
+    void build_alias();
     void add_environment_map(const EnvironmentMap& e, double radius);
     void add(const ConstantEmitter& e, double power);
     void add(const PointEmitter& e, double power);
@@ -33,6 +42,7 @@ private:
     MaterialFlattener& materials_;
     DeviceScene& out_;
     std::vector<double> powers_;
+    std::vector<LightBounds> bounds_;  // of the lights with a place
 };
 
 }  // namespace wavelobe

@@ -1,7 +1,8 @@
 #include "render/flatten_materials.h"
 
-#include <cmath>
+#include <cstring>
 
+#include "tables/dielectric_surface.h"
 #include "tables/light_power.h"
 
 namespace wavelobe {
@@ -11,28 +12,17 @@ constexpr std::uint32_t bit(LobeIndex lobe) { return 1U << lobe; }
 
 Packed3 packed(const Rgb& v) { return {v.x, v.y, v.z}; }
 
-// Unpolarized Fresnel reflectance of a dielectric boundary, eta = inside over outside (double: a table entry, not a path).
-double fresnel_dielectric(double cos_i, double eta) {
-    const double sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
-    if (sin2_t >= 1.0) return 1.0;
-    const double cos_t = std::sqrt(1.0 - sin2_t);
-    const double parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-    const double perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
-}
-
-// Reflectance for diffuse light: 2 integral of F(mu) mu over mu in [0, 1], midpoint rule in mu^2, fine enough
-// that the error stays below a rounding of float.
-double diffuse_fresnel(double eta) {
-    constexpr int steps = 1 << 16;
-    double sum = 0.0;
-    for (int i = 0; i < steps; ++i) sum += fresnel_dielectric(std::sqrt((i + 0.5) / steps), eta);
-    return sum / steps;
-}
-
 double mean_component(const Parameter& p) {
     if (!p.texture) return (static_cast<double>(p.value.x) + p.value.y + p.value.z) / 3.0;
     return mean_luminance(p);
+}
+
+// How the lobes of plastic share the samples, before Fresnel.
+template <class Model>
+float specular_share(const Model& m) {
+    const double specular = mean_component(m.specular_reflectance);
+    const double both = specular + mean_component(m.diffuse_reflectance);
+    return both > 0.0 ? static_cast<float>(specular / both) : 1.0F;
 }
 
 }  // namespace
@@ -131,9 +121,23 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Plastic& m) {
     out.diffuse = rgb(m.diffuse_reflectance);
     out.specular = rgb(m.specular_reflectance);
     out.diffuse_fresnel_internal = static_cast<float>(diffuse_fresnel(1.0 / static_cast<double>(m.eta)));
-    const double specular = mean_component(m.specular_reflectance);
-    const double both = specular + mean_component(m.diffuse_reflectance);
-    out.specular_weight = both > 0.0 ? static_cast<float>(specular / both) : 1.0F;
+    out.specular_weight = specular_share(m);
+}
+
+void MaterialFlattener::fill(DeviceMaterial& out, const RoughPlastic& m) {
+    out.lobes = bit(LOBE_ROUGH_PLASTIC_COAT) | bit(LOBE_ROUGH_PLASTIC_BASE);
+    if (m.nonlinear) out.flags |= MATERIAL_NONLINEAR;
+    out.eta.x = m.eta;
+    out.diffuse = rgb(m.diffuse_reflectance);
+    out.specular = rgb(m.specular_reflectance);
+    const Parameter alpha{Rgb{m.alpha}, nullptr};
+    fill_roughness(out, alpha, alpha, m.distribution);
+    const RoughSurface surface = rough_surface(m.eta, m.alpha, m.distribution);
+    out.diffuse_fresnel_internal = surface.internal_reflectance;
+    RoughTransmittance table{};
+    std::copy(surface.transmittance.begin(), surface.transmittance.end(), table.at);
+    out.extension = add_extension(table);
+    out.specular_weight = specular_share(m);
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
@@ -143,10 +147,17 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
     out.exponent = scalar(m.exponent);
 }
 
+template <class Extension>
+std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
+    const std::size_t first = out_.materials.size();
+    out_.materials.resize(first + (sizeof(Extension) + sizeof(DeviceMaterial) - 1) / sizeof(DeviceMaterial));
+    std::memcpy(static_cast<void*>(&out_.materials[first]), &extension, sizeof(Extension));
+    return static_cast<std::uint32_t>(first);
+}
+
 std::uint32_t MaterialFlattener::add(int material) {
     if (material < 0) return WAVELOBE_NONE;
-    const auto [found, added] = materials_.try_emplace(material, static_cast<std::uint32_t>(out_.materials.size()));
-    if (!added) return found->second;
+    if (const auto known = materials_.find(material); known != materials_.end()) return known->second;
     DeviceMaterial m{};
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
     for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent}) parameter->texture = WAVELOBE_NONE;
@@ -163,8 +174,14 @@ std::uint32_t MaterialFlattener::add(int material) {
     constexpr std::uint32_t smooth = (1U << LOBE_CLASS_GLOSSY) | (1U << LOBE_CLASS_DIFFUSE);
     f.mixture = f.mixture || (classes & smooth) == smooth;
     f.lobe_choice = f.lobe_choice || (classes & (classes - 1U)) != 0;
+    const auto index = static_cast<std::uint32_t>(out_.materials.size());
     out_.materials.push_back(m);
-    return found->second;
+    materials_.emplace(material, index);
+    return index;
+}
+
+DeviceOpacity MaterialFlattener::opacity(const Opacity& opacity) {
+    return {scalar(opacity.value), opacity.texture_scale, opacity.cutoff ? std::max(*opacity.cutoff, 0.0F) : -1.0F};
 }
 
 std::uint32_t MaterialFlattener::lobes(std::uint32_t device_material) const {

@@ -18,6 +18,7 @@ public:
     std::uint32_t lobes(std::uint32_t device_material) const;
 
     TexturedRgb rgb(const Parameter& parameter);
+    DeviceOpacity opacity(const Opacity& opacity);
 
 private:
     TexturedFloat scalar(const Parameter& parameter);
@@ -29,11 +30,16 @@ private:
     void fill(DeviceMaterial& out, const ThinDielectric& m);
     void fill(DeviceMaterial& out, const RoughDielectric& m);
     void fill(DeviceMaterial& out, const Plastic& m);
+    void fill(DeviceMaterial& out, const RoughPlastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);
     void fill_roughness(DeviceMaterial& out, const Parameter& alpha_u, const Parameter& alpha_v, Distribution distribution);
+
+    // Its record (DeviceMaterial::extension).
+    template <class Extension>
+    std::uint32_t add_extension(const Extension& extension);
 
     const Scene& scene_;
     DeviceScene& out_;

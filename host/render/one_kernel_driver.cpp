@@ -23,7 +23,6 @@ public:
         buffers.add_zeros<TileQueue>("tile_queue", 1);
         buffers.add_zeros<TileJob>("tile_jobs", context.scheduler.tile_count());
         buffers.add_zeros<StageCounters>("stage_counters", threads_ * STAGE_COUNT);
-        tiles_per_launch_ = threads_ * least_tiles_per_thread;
     }
 
     // PoCL generates a kernel's code at its first launch: done here, on an empty queue.
@@ -34,33 +33,43 @@ public:
         context_.device.finish();
     }
 
-    void step() override {
-        const std::vector<TileRange> ranges = take_ranges();
+    void step(double seconds) override {
+        const std::vector<TileRange> ranges = take_ranges(seconds);
         // As many work-items as compute threads: the queue, not PoCL, shares out the work.
         const ClEvent event = kernel_->launch(context_.device, threads_);
         context_.device.finish();
         const auto jobs = context_.buffers.view<TileJob>("tile_jobs");
+        std::uint64_t samples = 0;
         for (std::size_t i = 0; i < ranges.size(); ++i) {
             note_nonfinite(context_.stats, ranges[i], jobs[i].nonfinite_path);
-            context_.scheduler.finish(ranges[i]);
+            context_.scheduler.finish(ranges[i], {jobs[i].error, jobs[i].error_deviation});
+            samples += ranges[i].sample_count();
         }
-        const double seconds = event_seconds(event);
-        add_stages(seconds);
-        const double ideal = static_cast<double>(ranges.size()) * launch_seconds / std::max(seconds, 1e-6);
-        // Tiles differ: no jump by more than four times on the word of one launch.
-        tiles_per_launch_ = std::clamp(static_cast<std::size_t>(std::min(ideal, 4.0 * static_cast<double>(ranges.size()))),
-                                       threads_ * least_tiles_per_thread, context_.scheduler.tile_count() + threads_ * least_tiles_per_thread);
+        const double taken = event_seconds(event);
+        add_stages(taken);
+        samples_per_second_ = static_cast<double>(samples) / std::max(taken, 1e-6);
     }
 
 private:
-    std::vector<TileRange> take_ranges() {
+    // As many samples as the last launch says go into `seconds`, but a few tiles a thread at the least while there is time.
+    std::vector<TileRange> take_ranges(double seconds) {
         const auto jobs = context_.buffers.view<TileJob>("tile_jobs");
+        const double wanted = samples_per_second_ * std::min(seconds, launch_seconds);
+        const std::size_t least = seconds >= launch_seconds ? threads_ * least_tiles_per_thread : threads_;
         std::vector<TileRange> ranges;
-        while (ranges.size() < tiles_per_launch_) {
+        double samples = 0.0;
+        while (ranges.size() < least || samples < wanted) {
             const std::optional<TileRange> range = context_.scheduler.next();
             if (!range) break;
-            jobs[ranges.size()] = {range->x, range->y, range->first_sample, TILE_PIXELS * range->samples, WAVELOBE_NONE};
+            jobs[ranges.size()] = {.tile_x = range->x,
+                                   .tile_y = range->y,
+                                   .first_sample = range->first_sample,
+                                   .path_count = TILE_PIXELS * range->samples,
+                                   .nonfinite_path = WAVELOBE_NONE,
+                                   .error = 0.0F,
+                                   .error_deviation = 0.0F};
             ranges.push_back(*range);
+            samples += static_cast<double>(range->sample_count());
         }
         context_.buffers.view<TileQueue>("tile_queue")[0] = {0, static_cast<std::uint32_t>(ranges.size())};
         return ranges;
@@ -91,7 +100,7 @@ private:
 
     RenderContext context_;
     std::size_t threads_;
-    std::size_t tiles_per_launch_;
+    double samples_per_second_ = 0.0;  // of the last launch
     std::optional<Kernel> kernel_;
 };
 

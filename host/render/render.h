@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct RenderSettings {
     std::uint32_t seed = 0;
     int block_slots = 0;   // paths a block holds at once, a multiple of 16; 0: the default
     Driver driver = Driver::one_kernel;
+    double target_error = 0.0;  // relMSE at which a tile takes no more samples; 0: all tiles take all
+    double time_limit = 0.0;    // seconds of rendering; 0: none
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
 };
 
@@ -45,6 +48,7 @@ struct RenderStats {
     std::map<std::string, double> setup_parts;  // seconds: parse, bvh, tables, program_build, first_launches
     double render_seconds = 0.0;                // without set-up
     std::uint64_t samples = 0;
+    std::optional<double> estimated_error;      // relMSE of the picture, where a target was set
     std::uint64_t nan_samples = 0;
     std::vector<NonFiniteSample> nan_examples;  // the first few
     std::map<std::string, std::uint64_t> rays;  // camera, bounce, shadow
@@ -68,7 +72,7 @@ struct Image {
 
 struct Progress {
     std::uint64_t samples_done = 0;
-    std::uint64_t samples_total = 0;
+    double share = 0.0;    // of the work, as far as it can be told
     double seconds = 0.0;  // of rendering
 };
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <limits>
 
 #include "cl/cache_lock.h"
 #include "cl/kernel_source.h"
@@ -15,10 +17,14 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 constexpr int default_block_slots = 512;
+constexpr double no_limit = std::numeric_limits<double>::infinity();
 constexpr std::size_t named_nonfinite_samples = 8;
 
-std::uint32_t samples_per_block(int samples_per_pixel) {
-    return std::min(static_cast<std::uint32_t>(samples_per_pixel), BLOCK_SAMPLES);
+SamplePlan sample_plan(const RenderSettings& settings) {
+    return {.samples_per_pixel = static_cast<std::uint32_t>(settings.samples_per_pixel),
+            // The halves of an estimate take whole ranges in turn.
+            .growing_ranges = settings.time_limit > 0.0 && !(settings.target_error > 0.0),
+            .target_error = settings.target_error};
 }
 
 // Entries for a hierarchy of `depth` levels: seven siblings a level and the sentinel. In steps, so that most scenes share
@@ -68,11 +74,11 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
           const auto start = Clock::now();
           DeviceScene data = flatten_scene(scene);
           data.parameters.seed = settings_in.seed;
+          data.features.error_estimate = settings_in.target_error > 0.0;
           stats.setup_parts["tables"] = seconds_since(start);
           return data;
       }()),
-      scheduler(scene_data.parameters, static_cast<std::uint32_t>(settings.samples_per_pixel),
-                samples_per_block(settings.samples_per_pixel),
+      scheduler(scene_data.parameters, sample_plan(settings),
                 settings.driver == Driver::staged ? TileOrder::mixed : TileOrder::rows),
       buffers(device) {
     build_geometry();
@@ -121,17 +127,23 @@ bool Renderer::State::render(const ProgressCallback& progress) {
     // Not even emitters are seen along a path of no edges.
     const bool anything = scene_data.parameters.max_depth > 0;
     while (anything && !scheduler.finished()) {
-        driver->step();
-        if (progress && !progress({scheduler.samples_done(), scheduler.total_samples(), seconds_since(start)})) break;
+        const double left = settings.time_limit > 0.0 ? settings.time_limit - seconds_since(start) : no_limit;
+        if (left <= 0.0) break;
+        driver->step(left);
+        const double seconds = seconds_since(start);
+        const double share = std::max(scheduler.share_done(), settings.time_limit > 0.0 ? seconds / settings.time_limit : 0.0);
+        if (progress && !progress({scheduler.samples_done(), std::min(share, 1.0), seconds})) break;
     }
     driver->wait();
     stats.render_seconds = seconds_since(start);
     stats.samples = scheduler.samples_done();
     stats.stages = timer.rows(scene_data.features);
     count_rays();
+    if (settings.target_error > 0.0) stats.estimated_error = scheduler.estimated_error();
     stats.nan_samples = 0;
     for (const FilmPixel& pixel : buffers.view<FilmPixel>("film")) stats.nan_samples += pixel.nonfinite;
-    return !anything || scheduler.finished();
+    const bool out_of_time = settings.time_limit > 0.0 && stats.render_seconds >= settings.time_limit;
+    return !anything || scheduler.finished() || out_of_time;
 }
 
 Renderer::Renderer(const Device& device, const Scene& scene, const RenderSettings& settings)
@@ -147,10 +159,17 @@ Image Renderer::image() const {
     const RenderParameters& p = state_->scene_data.parameters;
     Image image{static_cast<int>(p.window_width), static_cast<int>(p.window_height), {}};
     image.rgb.reserve(std::size_t{3} * p.window_width * p.window_height);
-    for (const FilmPixel& pixel : state_->buffers.view<FilmPixel>("film")) {
-        for (const double sum : pixel.sum) {
-            image.rgb.push_back(pixel.samples > 0 ? static_cast<float>(sum / pixel.samples) : 0.0F);
+    const auto film = state_->buffers.view<FilmPixel>("film");
+    const std::size_t pixels = std::size_t{p.window_width} * p.window_height;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        std::array<double, 3> sum{};
+        double samples = 0.0;
+        // One film, or the two halves of an error estimate.
+        for (std::size_t half = i; half < film.size(); half += pixels) {
+            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += film[half].sum[c];
+            samples += film[half].samples;
         }
+        for (const double channel : sum) image.rgb.push_back(samples > 0.0 ? static_cast<float>(channel / samples) : 0.0F);
     }
     return image;
 }

@@ -34,7 +34,7 @@ public:
     }
 
     // One vertex of every path in flight.
-    void step() override {
+    void step(double /*seconds*/) override {
         assign();
         start_and_trace();
         bool finished = false;
@@ -115,7 +115,7 @@ private:
             if (!busy[i] || headers_[i].path_count != 0) continue;
             collected += ranges_[i].sample_count();
             note_nonfinite(context_.stats, ranges_[i], headers_[i].nonfinite_path);
-            context_.scheduler.finish(ranges_[i]);
+            context_.scheduler.finish(ranges_[i], {headers_[i].error, headers_[i].error_deviation});
         }
         context_.timer.add_launch(STAGE_ACCUMULATE, collected, std::move(event));
     }

@@ -105,6 +105,15 @@ struct Plastic {
     bool nonlinear = false;
 };
 
+struct RoughPlastic {
+    float eta = 1.49F / 1.000277F;
+    Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
+    Parameter specular_reflectance{Rgb{1.0F}, nullptr};
+    float alpha = 0.1F;
+    Distribution distribution = Distribution::beckmann;
+    bool nonlinear = false;
+};
+
 // Normalized Phong of Mitsuba 0.x: diffuse / pi + specular * (exponent + 2) / (2 pi) * cos^exponent.
 struct Phong {
     Parameter diffuse_reflectance{Rgb{0.5F}, nullptr};
@@ -113,11 +122,20 @@ struct Phong {
 };
 
 using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
-                                   RoughDielectric, Plastic, Phong>;
+                                   RoughDielectric, Plastic, RoughPlastic, Phong>;
 
 struct Material {
     MaterialModel model;
     std::string name;  // id in the file, for messages
+};
+
+// How much of a surface is there, both sides alike: rays, those to lights among them, pass it with probability 1 - opacity. The
+// value's red channel is scaled (a texture's alone) and clamped to [0, 1]; with a cutoff (glTF's alpha mode MASK) the surface
+// is all there where the scaled value reaches it and not at all elsewhere. What a surface emits is not lessened.
+struct Opacity {
+    Parameter value{Rgb{1.0F}, nullptr};
+    float texture_scale = 1.0F;
+    std::optional<float> cutoff;
 };
 
 // What a surface shows on each side. Transmissive materials have the same index on both sides;
@@ -125,6 +143,7 @@ struct Material {
 struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
+    Opacity opacity{};
 };
 
 // ---- shapes --------------------------------------------------------------------------------------

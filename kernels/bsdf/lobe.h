@@ -75,4 +75,10 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))
 #define load_constant(in, field) material_word(in, WORD_OFFSET(Material, field))
 
+// The parameters of a material's extension, a struct of shared/materials.h.
+INLINE MaterialInput extension_of(MaterialInput in) {
+    in.material = as_UInt(load_constant(in, extension));
+    return in;
+}
+
 #endif

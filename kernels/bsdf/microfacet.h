@@ -185,4 +185,33 @@ INLINE Vec3 sample_visible_normal(Microfacets d, Vec3 wi, Float u1, Float u2) {
     return m;
 }
 
+// ---- reflection off microfacets. Cook, Torrance 1982, "A Reflectance Model for Computer Graphics" ----------------------
+
+typedef struct {
+    Int visible;  // otherwise the lobe is zero
+    Float cos_m;  // between either direction and the microfacets that reflect
+    Float value;  // BSDF times |cos wo| of perfectly reflecting microfacets
+    Float pdf;    // of sample_microfacet_reflection
+} MicrofacetReflection;
+
+INLINE MicrofacetReflection microfacet_reflection(Microfacets d, Vec3 wi, Vec3 wo) {
+    MicrofacetReflection r;
+    Vec3 m = normalize3(add(wi, wo));
+    r.cos_m = dot3(wi, m);
+    // The last condition fails where the half vector of two grazing directions underflows.
+    r.visible = (wi.z > 0.0f) & (wo.z > 0.0f) & (r.cos_m > 0.0f);
+    // Density of normals times the Jacobian 1 / (4 wo . m) of the half vector, whose cosine cancels.
+    Float density = 0.25f * microfacet_density(d, m);
+    Masking g = microfacet_masking(d, wi, wo);
+    r.value = density * g.both;
+    r.pdf = density * g.visible;
+    return r;
+}
+
+INLINE Vec3 sample_microfacet_reflection(Microfacets d, Vec3 wi, Float u1, Float u2) {
+    Vec3 m = sample_visible_normal(d, wi, u1, u2);
+    Vec3 wo = scale_add(m, 2.0f * dot3(wi, m), negate(wi));
+    return select3((wi.z > 0.0f) & (wo.z > 0.0f), wo, vec3_all(ZERO));
+}
+
 #endif

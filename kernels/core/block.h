@@ -10,7 +10,7 @@
 // Fields of a path, in order of storage. A path that was traced is kept without those it no longer needs: its origin
 // (except where analytic shapes are refined from it) comes last and is dropped.
 #define PATH_T 0u         // distance of the hit; before tracing: how far to look
-#define PATH_HIT 1u       // what was hit, see shared/bvh.h
+#define PATH_HIT 1u       // what was hit, see shared/bvh.h; before tracing: the primitive that the ray leaves, or HIT_NONE
 #define PATH_U 2u         // barycentric coordinates
 #define PATH_V 3u
 #define PATH_DIRECTION 4u // 3, unit
@@ -19,10 +19,17 @@
 #define PATH_ID 11u       // of the path within its block
 #define PATH_DEPTH 12u    // vertices before this one
 #define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette
+#if HAS_LIGHT_TREE
+#define PATH_RECEIVER 14u // code of the normal where light was last sampled (lights/light_tree.h)
+#define PATH_ORIGIN 15u   // 3
+#define PATH_FIELDS (RAY_FIELDS + 1u)
+#else
 #define PATH_ORIGIN 14u   // 3
+#define PATH_FIELDS RAY_FIELDS
+#endif
 
 #if HAS_ANALYTIC
-#define TRACED_FIELDS RAY_FIELDS
+#define TRACED_FIELDS PATH_FIELDS
 #else
 #define TRACED_FIELDS PATH_ORIGIN
 #endif
@@ -32,11 +39,12 @@
 #define SHADOW_DIRECTION 1u   // 3, unit
 #define SHADOW_CONTRIBUTION 4u // 3, radiance the path gains if nothing is in the way
 #define SHADOW_ID 7u
-#define SHADOW_ORIGIN 8u      // 3
+#define SHADOW_FROM 8u        // primitive that the ray leaves
+#define SHADOW_ORIGIN 9u      // 3
 
 #define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
 #define RAYS_OFFSET 0u
-#define ESCAPED_OFFSET (RAYS_OFFSET + RAY_FIELDS * QUEUE_STRIDE)
+#define ESCAPED_OFFSET (RAYS_OFFSET + PATH_FIELDS * QUEUE_STRIDE)
 #define EMITTED_OFFSET (ESCAPED_OFFSET + HAS_ENVIRONMENT * TRACED_FIELDS * QUEUE_STRIDE)
 #define DELTA_OFFSET (EMITTED_OFFSET + HAS_SURFACE_LIGHTS * TRACED_FIELDS * QUEUE_STRIDE)
 #define GLOSSY_OFFSET (DELTA_OFFSET + HAS_DELTA_LOBES * TRACED_FIELDS * QUEUE_STRIDE)

@@ -6,6 +6,9 @@
 #include "lights/light.h"
 #include "shared/scene.h"
 #include "bsdf/material.h"
+#if HAS_LIGHT_TREE
+#include "lights/light_tree.h"
+#endif
 
 #if HAS_ENVIRONMENT
 #define ENVIRONMENT_PARAMETERS , global const struct Environment *environment
@@ -29,19 +32,60 @@
 #define LIGHT_ANALYTICS 0
 #endif
 
-// For kernels that already take SURFACE_PARAMETERS and TEXTURE_PARAMETERS.
-#define LIGHT_PARAMETERS , global const struct Light *lights ENVIRONMENT_PARAMETERS ENVMAP_PARAMETERS
-#define LIGHT_VIEW {(UInt)0u, lights, LIGHT_ANALYTICS, ENVIRONMENT_ARGUMENT, ENVMAP_ARGUMENTS, TEXTURE_ARGUMENTS}
+#if HAS_LIGHT_TREE
+#define LIGHT_TREE_PARAMETER , global const struct LightNode *light_tree
+#define LIGHT_TREE_ARGUMENT light_tree
+#else
+#define LIGHT_TREE_PARAMETER
+#define LIGHT_TREE_ARGUMENT 0
+#endif
 
+// For kernels that already take SURFACE_PARAMETERS and TEXTURE_PARAMETERS.
+#define LIGHT_PARAMETERS , global const struct Light *lights ENVIRONMENT_PARAMETERS ENVMAP_PARAMETERS LIGHT_TREE_PARAMETER
+#define LIGHT_VIEW                                                                                            \
+    {(UInt)0u, lights, LIGHT_ANALYTICS, ENVIRONMENT_ARGUMENT, ENVMAP_ARGUMENTS, TEXTURE_ARGUMENTS, LIGHT_TREE_ARGUMENT, \
+     parameters->light_count, parameters->finite_light_count}
+
+#if HAS_LIGHT_TREE
+// Lights at infinity by their share, the others by the tree. `in->light` is the light; the result its probability, zero where
+// none shines. `u_deep` is a second number for trees deeper than the digits of the first.
+INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_deep) {
+    Float below = ZERO;
+    UInt at_infinity = (UInt)in->finite_light_count;
+    Float probability = ONE;
+    Int chosen = !TRUE_MASK;
+    for (uint i = in->finite_light_count; i < in->light_count; i++) {
+        Float share = (Float)in->lights[i].selection_probability;
+        Int here = !chosen & (u < below + share);
+        at_infinity = SELECT(here, (UInt)i, at_infinity);
+        probability = SELECT(here, share, probability);
+        chosen |= here;
+        below += share;
+    }
+    Float rest = (u - below) / (1.0f - below);
+    UInt light;
+    Float walked = walk_light_tree(in->light_tree, receiver, LESSER(rest, (Float)0x1.fffffep-1f), u_deep, &light);
+    in->light = SELECT(chosen, at_infinity, light);
+    return SELECT(chosen, probability, (1.0f - below) * walked);
+}
+
+// Probability of the lane's light, which has a place, being chosen for the receiver in the wanted lanes.
+INLINE Float placed_light_probability(LightInput in, Receiver receiver, Int wanted) {
+    Float below = ZERO;
+    for (uint i = in.finite_light_count; i < in.light_count; i++) below += (Float)in.lights[i].selection_probability;
+    UInt trail = as_UInt(light_field(in, trail));
+    return (1.0f - below) * light_tree_probability(in.light_tree, receiver, trail, wanted);
+}
+#else
 // Chooses by power: Walker's alias method. `in->light` is the light; the result its probability.
-INLINE Float choose_light(LightInput *in, uint light_count, Float u) {
+INLINE Float choose_light(LightInput *in, Float u) {
 #if LIGHT_COUNT == 1
     in->light = (UInt)0u;
     return ONE;
 #else
-    Float at = u * (float)light_count;
+    Float at = u * (float)in->light_count;
     UInt row = as_UInt(convert_Int(at));
-    row = SELECT(row < (UInt)light_count, row, (UInt)(light_count - 1u)); // u * count may round up to count
+    row = SELECT(row < (UInt)in->light_count, row, (UInt)(in->light_count - 1u)); // u * count may round up to count
     Float fraction = at - convert_Float(as_Int(row));
     Float threshold = gather((global const float *)in->lights + WORD_OFFSET(Light, alias), row * RECORD_WORDS(Light));
     UInt other = gather_uint((global const uint *)in->lights + WORD_OFFSET(Light, alias) + 1u, row * RECORD_WORDS(Light));
@@ -49,6 +93,7 @@ INLINE Float choose_light(LightInput *in, uint light_count, Float u) {
     return GATHER_FIELD(in->lights, Light, in->light, selection_probability);
 #endif
 }
+#endif
 
 INLINE LightSample select_sample(Int mask, LightSample a, LightSample b) {
     LightSample s;

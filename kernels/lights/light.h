@@ -31,6 +31,8 @@ typedef struct {
     global const float *environment_density;       // a cell: probability over its share of the unit square, that is pdf in (u, v)
     global const struct Texture *textures;
     global const float *texels;
+    global const struct LightNode *light_tree;
+    uint light_count, finite_light_count; // with a tree: those in it come first
 } LightInput;
 
 typedef struct {

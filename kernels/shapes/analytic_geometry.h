@@ -27,14 +27,15 @@ INLINE void quadratic_roots(double a, double b, double c, double root, double *n
     *far = t0 < t1 ? t1 : t0;
 }
 
-// The nearer of two roots that lies strictly between 0 and `limit` as a float, otherwise infinity.
-INLINE float nearest_root(double near, int near_valid, double far, int far_valid, float limit) {
+// The nearer of two roots that lies strictly between `after` and `limit` as a float, otherwise infinity.
+INLINE float nearest_root(double near, int near_valid, double far, int far_valid, float after, float limit) {
     float t0 = (float)near, t1 = (float)far;
-    if (near_valid && t0 > 0.0f && t0 < limit) return t0;
-    return far_valid && t1 > 0.0f && t1 < limit ? t1 : INFINITY;
+    if (near_valid && t0 > after && t0 < limit) return t0;
+    return far_valid && t1 > after && t1 < limit ? t1 : INFINITY;
 }
 
-INLINE float intersect_sphere(global const struct Analytic *s, double fx, double fy, double fz, const Ray *r, float limit) {
+INLINE float intersect_sphere(global const struct Analytic *s, double fx, double fy, double fz, const Ray *r, float after,
+                              float limit) {
     double dx = r->dx, dy = r->dy, dz = r->dz, r2 = (double)s->radius * (double)s->radius;
     double a = dot_double(dx, dy, dz, dx, dy, dz), b = dot_double(fx, fy, fz, dx, dy, dz);
     double m = -b / a; // where the ray is nearest to the centre
@@ -43,15 +44,17 @@ INLINE float intersect_sphere(global const struct Analytic *s, double fx, double
     if (!(below >= 0.0)) return INFINITY;
     double near, far;
     quadratic_roots(a, b, dot_double(fx, fy, fz, fx, fy, fz) - r2, sqrt(a * below), &near, &far);
-    return nearest_root(near, 1, far, 1, limit);
+    return nearest_root(near, 1, far, 1, after, limit);
 }
 
-INLINE float intersect_disk(double ox, double oy, double oz, double dx, double dy, double dz, float limit) {
+INLINE float intersect_disk(double ox, double oy, double oz, double dx, double dy, double dz, float after,
+                            float limit) {
     double t = -oz / dz, x = ox + t * dx, y = oy + t * dy;
-    return nearest_root(t, x * x + y * y <= 1.0, t, 0, limit);
+    return nearest_root(t, x * x + y * y <= 1.0, t, 0, after, limit);
 }
 
-INLINE float intersect_cylinder(double ox, double oy, double oz, double dx, double dy, double dz, float limit) {
+INLINE float intersect_cylinder(double ox, double oy, double oz, double dx, double dy, double dz, float after,
+                            float limit) {
     double a = dx * dx + dy * dy, b = ox * dx + oy * dy;
     double moment = ox * dy - oy * dx; // distance of the ray from the axis times sqrt(a)
     double below = a - moment * moment;
@@ -59,19 +62,19 @@ INLINE float intersect_cylinder(double ox, double oy, double oz, double dx, doub
     double near, far;
     quadratic_roots(a, b, ox * ox + oy * oy - 1.0, sqrt(below), &near, &far);
     double z0 = oz + near * dz, z1 = oz + far * dz;
-    return nearest_root(near, z0 >= 0.0 && z0 <= 1.0, far, z1 >= 0.0 && z1 <= 1.0, limit);
+    return nearest_root(near, z0 >= 0.0 && z0 <= 1.0, far, z1 >= 0.0 && z1 <= 1.0, after, limit);
 }
 
-// Distance to the first hit strictly between 0 and `limit`, otherwise infinity.
-INLINE float intersect_analytic(global const struct Analytic *s, const Ray *r, float limit) {
+// Distance to the first hit strictly between `after` and `limit`, otherwise infinity.
+INLINE float intersect_analytic(global const struct Analytic *s, const Ray *r, float after, float limit) {
     global const float *w = s->to_world.m, *m = s->to_object.m;
     double fx = (double)r->ox - (double)w[3], fy = (double)r->oy - (double)w[7], fz = (double)r->oz - (double)w[11];
-    if (s->kind == ANALYTIC_SPHERE) return intersect_sphere(s, fx, fy, fz, r, limit);
+    if (s->kind == ANALYTIC_SPHERE) return intersect_sphere(s, fx, fy, fz, r, after, limit);
     double dx = dot_double(m[0], m[1], m[2], r->dx, r->dy, r->dz), ox = dot_double(m[0], m[1], m[2], fx, fy, fz);
     double dy = dot_double(m[4], m[5], m[6], r->dx, r->dy, r->dz), oy = dot_double(m[4], m[5], m[6], fx, fy, fz);
     double dz = dot_double(m[8], m[9], m[10], r->dx, r->dy, r->dz), oz = dot_double(m[8], m[9], m[10], fx, fy, fz);
-    if (s->kind == ANALYTIC_DISK) return intersect_disk(ox, oy, oz, dx, dy, dz, limit);
-    return intersect_cylinder(ox, oy, oz, dx, dy, dz, limit);
+    if (s->kind == ANALYTIC_DISK) return intersect_disk(ox, oy, oz, dx, dy, dz, after, limit);
+    return intersect_cylinder(ox, oy, oz, dx, dy, dz, after, limit);
 }
 
 // ---- the surface at a hit, LANES at a time ---------------------------------------------------------------------------

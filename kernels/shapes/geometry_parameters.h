@@ -1,33 +1,70 @@
-// The buffers that rays are traced through beside those of SURFACE_PARAMETERS, as kernel parameters, and rays as queues hold
-// them.
+// The buffers that rays are traced through, as kernel parameters, and rays as queues hold them. The views take what surfaces
+// have parameters for already (shapes/surface.h).
 #ifndef WAVELOBE_SHAPES_GEOMETRY_PARAMETERS_H
 #define WAVELOBE_SHAPES_GEOMETRY_PARAMETERS_H
 
 #include "core/block.h"
 #include "shared/scene.h"
 
+#if HAS_OPACITY
+#include "shapes/opacity.h"
+#define OPACITY_PARAMETER , global const struct Opacity *opacities
+#define OPACITY_ARGUMENT , OPACITY_VIEW
+#else
+#define OPACITY_PARAMETER
+#define OPACITY_ARGUMENT
+#endif
+#if HAS_MASKS
+#define KEY_ARGUMENT(geometry, block, path, direction) , ray_key((geometry).opacity, block, path, direction)
+#else
+#define KEY_ARGUMENT(geometry, block, path, direction)
+#endif
+
 #if HAS_FEW_TRIANGLES
 #include "shapes/few_triangles.h"
 
 typedef FewTriangles Geometry;
-#define GEOMETRY_PARAMETERS global const float *few_vertices, global const struct FewTriangle *few_triangles
-#define GEOMETRY_VIEW {few_vertices, few_triangles, parameters->few_vertex_count, parameters->few_triangle_count}
+#define GEOMETRY_PARAMETERS \
+    global const float *few_vertices, global const struct FewTriangle *few_triangles OPACITY_PARAMETER
+#define GEOMETRY_VIEW                                                                                   \
+    {few_vertices, few_triangles, parameters->few_vertex_count, parameters->few_triangle_count          \
+     OPACITY_ARGUMENT}
 
 #else
 #include "shapes/traversal.h"
 
 #if HAS_ANALYTIC
-#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes, global const uint *analytic_order
-#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks, analytics, analytic_order}
+#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes, global const uint *analytic_order OPACITY_PARAMETER
+#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks, analytics, analytic_order OPACITY_ARGUMENT}
 #else
-#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes
-#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks}
+#define GEOMETRY_PARAMETERS global const uchar *bvh_nodes OPACITY_PARAMETER
+#define GEOMETRY_VIEW {bvh_nodes, (global const uchar *)triangle_blocks OPACITY_ARGUMENT}
 #endif
 
-INLINE Ray slot_ray(Queue q, uint origin, uint direction, uint limit, uint i) {
-    Ray r = {slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
-             slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
-             slot_float(q, limit, i)};
+#if LANES == 1
+#define FIRST_LANE(v) (v)
+#else
+#define FIRST_LANE(v) (v).s0
+#endif
+
+#if HAS_MASKS
+INLINE uint slot_key(Geometry g, Block block, Queue q, uint direction, uint path, uint i) {
+    Vec3 d = vec3((Float)slot_float(q, direction, i), (Float)slot_float(q, direction + 1u, i),
+                  (Float)slot_float(q, direction + 2u, i));
+    return FIRST_LANE(ray_key(g.opacity, block, (UInt)slot_uint(q, path, i), d));
+}
+#endif
+
+// The ray of slot i; the others are the queue's fields for its parts.
+INLINE Ray slot_ray(Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint from, uint path, uint i) {
+    Ray r = {
+        slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
+        slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
+        slot_float(q, limit, i),     slot_uint(q, from, i),
+#if HAS_MASKS
+        slot_key(g, block, q, direction, path, i),
+#endif
+    };
     return r;
 }
 #endif

@@ -10,6 +10,10 @@ typedef struct {
     float ox, oy, oz;
     float dx, dy, dz; // unit
     float limit;
+    uint from; // number of the triangle that the ray leaves and cannot meet; HIT_NONE: it leaves none
+#if HAS_MASKS
+    uint key; // what is drawn where opacity lets some rays pass (shapes/opacity.h)
+#endif
 } Ray;
 
 typedef struct {
@@ -17,6 +21,15 @@ typedef struct {
     float u, v;    // barycentric weights of the second and third vertex
     uint primitive; // HIT_NONE, a triangle slot, or HIT_ANALYTIC | index
 } Hit;
+
+// Numbers of triangles from what blocks hold of them.
+#if HAS_MASKS
+#define TRIANGLE_NUMBERS(entries) ((entries) & ~PRIMITIVE_MASKED)
+#else
+#define TRIANGLE_NUMBERS(entries) (entries)
+#endif
+
+#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 
 // Rays that are not numbers hit nothing. The box test must not see them: which of its comparisons a NaN passes is chance.
 INLINE int is_finite_ray(const Ray *r) {

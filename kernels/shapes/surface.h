@@ -7,6 +7,7 @@
 #include "shared/bvh.h"
 #include "shared/scene.h"
 #include "shared/materials.h"
+#include "shapes/triangle_uvs.h"
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
@@ -71,6 +72,9 @@ typedef struct {
 #if HAS_TRANSMISSION
     Float eta;
 #endif
+#if HAS_LIGHT_TREE
+    UInt receiver;
+#endif
     Int live; // lanes that hold a path
 } TracedPath;
 
@@ -105,6 +109,9 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #if HAS_TRANSMISSION
     p.eta = read_field(q, PATH_ETA, i);
 #endif
+#if HAS_LIGHT_TREE
+    p.receiver = read_uint(q, PATH_RECEIVER, i);
+#endif
     return p;
 }
 
@@ -117,14 +124,21 @@ INLINE Vec3 normalize_any_scale(Vec3 a) {
 
 INLINE UInt block_word(UInt slot) { return (slot >> 3) * RECORD_WORDS(TriangleBlock) + (slot & (UInt)7u); }
 
+// The ids of primitives carry a bit for rays where scenes have masks.
+#if HAS_MASKS
+#define PRIMITIVE_ID(word) ((word) & (UInt)~PRIMITIVE_MASKED)
+#else
+#define PRIMITIVE_ID(word) (word)
+#endif
+
 INLINE UInt primitive_of_hit(SurfaceView s, UInt hit) {
 #if HAS_ANALYTIC
     Int analytic = (hit & (UInt)HIT_ANALYTIC) != (UInt)0u;
     UInt slot = SELECT(analytic, (UInt)0u, hit);
-    UInt triangle = gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot));
+    UInt triangle = PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
     return SELECT(analytic, (hit & (UInt)~HIT_ANALYTIC) + (UInt)s.triangle_count, triangle);
 #else
-    return gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(hit));
+    return PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(hit)));
 #endif
 }
 
@@ -141,16 +155,7 @@ INLINE Vec3 interpolate(Vec3 a, Vec3 b, Vec3 c, Float wa, Float wb, Float wc) {
 INLINE Vec3 gather_vec3(global const float *p, UInt i) { return vec3(gather(p, i), gather(p + 1, i), gather(p + 2, i)); }
 
 #if HAS_UVS
-// The tangent along u of a triangle with texture coordinates, and the coordinates at the hit.
-INLINE void triangle_uvs(SurfaceView s, UInt first_uv, UInt triangle, Float wb, Float wc, Float wa, Surface *out) {
-    Int textured = first_uv != (UInt)WAVELOBE_NONE;
-    UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Float u0 = gather(s.uvs, at), v0 = gather(s.uvs + 1, at), u1 = gather(s.uvs + 2, at), v1 = gather(s.uvs + 3, at);
-    Float u2 = gather(s.uvs + 4, at), v2 = gather(s.uvs + 5, at);
-    out->u = SELECT(textured, madd(u0, wa, madd(u1, wb, u2 * wc)), wb);
-    out->v = SELECT(textured, madd(v0, wa, madd(v1, wb, v2 * wc)), wc);
-}
-
+// The tangent along u of a triangle with texture coordinates.
 INLINE Vec3 triangle_tangent(SurfaceView s, UInt first_uv, UInt triangle, Vec3 e1, Vec3 e2, Vec3 fallback) {
     Int textured = first_uv != (UInt)WAVELOBE_NONE;
     UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
@@ -202,7 +207,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     out->v = wc;
 #if HAS_UVS
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_uv);
-    triangle_uvs(s, first_uv, triangle, wb, wc, wa, out);
+    triangle_uvs(s.uvs, first_uv, triangle, wa, wb, wc, &out->u, &out->v);
 #endif
 #if HAS_ANISOTROPY && HAS_UVS
     out->frame = frame_along(n, triangle_tangent(s, first_uv, triangle, e1, e2, frame_of_normal(n).s));

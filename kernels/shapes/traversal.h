@@ -14,6 +14,9 @@
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
+#if HAS_MASKS
+#include "shapes/masks.h"
+#endif
 
 typedef struct {
     global const uchar *nodes;  // BvhNode
@@ -21,6 +24,9 @@ typedef struct {
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     global const uint *analytic_order;
+#endif
+#if HAS_OPACITY
+    OpacityView opacity;
 #endif
 } Geometry;
 
@@ -68,7 +74,6 @@ INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float
     return lane_bits8(enter <= leave);
 }
 
-#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
 
@@ -116,12 +121,21 @@ INLINE uint push_children(uint mask, float8 distance, global const uint *child, 
     return (uint)k0;
 }
 
+#if HAS_MASKS
+#define ANALYTIC_ID(entry) ((entry) & ~PRIMITIVE_MASKED)
+#else
+#define ANALYTIC_ID(entry) (entry)
+#endif
+
 #if HAS_ANALYTIC
 INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit) {
     uint first = (reference & ~(BVH_LEAF | BVH_ANALYTIC)) >> 4;
     for (uint i = first; i < first + (reference & 15u); i++) {
-        uint shape = g.analytic_order[i];
-        float t = intersect_analytic(g.analytics + shape, r, hit->t);
+        uint shape = ANALYTIC_ID(g.analytic_order[i]);
+        float t = intersect_analytic(g.analytics + shape, r, 0.0f, hit->t);
+#if HAS_MASKS
+        t = first_not_passed(g.opacity, g.analytics, g.analytic_order[i], r, t, hit->t);
+#endif
         if (t < hit->t) {
             hit->t = t;
             hit->primitive = HIT_ANALYTIC | shape;
@@ -130,10 +144,15 @@ INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit)
 }
 #endif
 
-INLINE void closest_in_block(global const uchar *block, uint index, const RayShear *shear, Hit *hit) {
+INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShear *shear, Hit *hit) {
+    global const uchar *block = g.blocks + (size_t)index * sizeof(struct TriangleBlock);
     float8 t, u, v;
-    uint mask = intersect_triangle_block(block, shear, hit->t, &t, &u, &v);
+    uint mask = intersect_triangle_block(block, shear, r, hit->t, &t, &u, &v);
     if (LIKELY(mask == 0u)) return;
+#if HAS_MASKS
+    mask = not_passed(g.opacity, block, mask, r, u, v);
+    if (mask == 0u) return;
+#endif
     float ts[8] __attribute__((aligned(32))), us[8] __attribute__((aligned(32))), vs[8] __attribute__((aligned(32)));
     *(float8 *)ts = t;
     POP_LOWEST_BIT(mask, nearest);
@@ -174,8 +193,7 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
         }
 #endif
         {
-            uint block = current & ~BVH_LEAF;
-            closest_in_block(g.blocks + (size_t)block * sizeof(struct TriangleBlock), block, &shear, &hit);
+            closest_in_block(g, current & ~BVH_LEAF, r, &shear, &hit);
         }
     pop:;
         ulong limit_key = (ulong)as_uint(hit.t) << 32, key;
@@ -190,7 +208,12 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
 INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
     uint first = (reference & ~(BVH_LEAF | BVH_ANALYTIC)) >> 4;
     for (uint i = first; i < first + (reference & 15u); i++) {
-        if (intersect_analytic(g.analytics + g.analytic_order[i], r, r->limit) < r->limit) return 1u;
+        uint shape = ANALYTIC_ID(g.analytic_order[i]);
+        float t = intersect_analytic(g.analytics + shape, r, 0.0f, r->limit);
+#if HAS_MASKS
+        t = first_not_passed(g.opacity, g.analytics, g.analytic_order[i], r, t, r->limit);
+#endif
+        if (t < r->limit) return 1u;
     }
     return 0u;
 }
@@ -230,9 +253,14 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
             continue;
         }
 #endif
-        global const uchar *block = g.blocks + (size_t)(current & ~BVH_LEAF) * sizeof(struct TriangleBlock);
+        uint block = current & ~BVH_LEAF;
+        global const uchar *triangles = g.blocks + (size_t)block * sizeof(struct TriangleBlock);
         float8 t, u, v;
-        if (UNLIKELY(intersect_triangle_block(block, &shear, r->limit, &t, &u, &v))) return 1u;
+        uint mask = intersect_triangle_block(triangles, &shear, r, r->limit, &t, &u, &v);
+#if HAS_MASKS
+        if (UNLIKELY(mask)) mask = not_passed(g.opacity, triangles, mask, r, u, v);
+#endif
+        if (UNLIKELY(mask)) return 1u;
         current = stack[--top];
     }
 }

@@ -3,7 +3,7 @@
 #ifndef WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 #define WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 
-#include "core/rounding.h"
+#include "shapes/near_plane.h"
 #include "shapes/ray.h"
 
 // The shear that turns the ray into the unit z axis, and the byte offsets of the permuted coordinates within a vertex.
@@ -47,18 +47,37 @@ INLINE float8 madd8(float8 a, float8 b, float8 c) {
 
 INLINE float8 largest_of(float8 a, float8 b, float8 c) { return GREATER(GREATER(fabs(a), fabs(b)), fabs(c)); }
 
-// Bound on the rounding error of a computed distance, from the sheared coordinates' largest magnitudes. A ray leaves a
-// surface from a point that is right to within its own bound (core/rounding.h); what the test says of that surface may be
-// off by this much more, so hits no farther than the bound are the surface itself.
-// Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing Rounding Error", bounding triangle intersections.
-INLINE float8 distance_error(float8 x, float8 y, float8 z, float8 area, float8 inverse) {
-    float8 dx = GAMMA(5) * (x + z), dy = GAMMA(5) * (y + z), dz = GAMMA(3) * z;
-    float8 d_area = 2.0f * (GAMMA(2) * x * y + dy * x + dx * y);
-    return 3.0f * (GAMMA(3) * area * z + d_area * z + dz * area) * fabs(inverse);
+// The distance of a hit times the triangle's projected area is off by less than this times p q^2, where p is the largest
+// coordinate across the ray and q the largest of all: coordinates are off by at most GAMMA(10) q, areas of at most 2 p^2
+// by 44 HALF_ULP p q, and three products of one and the other by 168 HALF_ULP p q^2. (After Pharr, Jakob, Humphreys,
+// "Physically Based Rendering", "Managing Rounding Error", bounding triangle intersections.)
+#define BLOCK_DISTANCE_ERROR GAMMA(180)
+
+INLINE Point block_corner(global const uchar *block, uint vertex, uint lane) {
+    global const float *row = (global const float *)(block + vertex * BLOCK_VERTEX_BYTES) + lane;
+    Point p = {row[0], row[8], row[16]};
+    return p;
 }
 
-// Bit i of the result: triangle i is hit before `limit`; then t, u and v hold its distance and barycentrics.
-INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *s, float limit, float8 *t, float8 *u,
+// Decides the lanes of `near`: those hit in (0, limit), with their distances.
+INLINE uint hits_near_origin(global const uchar *block, uint near, const Ray *r, float limit, float8 *t) {
+    float distance[8] __attribute__((aligned(32)));
+    *(float8 *)distance = *t;
+    uint hits = 0u;
+    do {
+        POP_LOWEST_BIT(near, i);
+        float d = distance_to_plane(block_corner(block, 0u, i), block_corner(block, 1u, i), block_corner(block, 2u, i),
+                                    r->ox, r->oy, r->oz, r->dx, r->dy, r->dz);
+        distance[i] = d;
+        hits |= ((d > 0.0f) & (d < limit)) ? 1u << i : 0u;
+    } while (near);
+    *t = *(float8 *)distance;
+    return hits;
+}
+
+// Bit i of the result: triangle i is hit before `limit`; then t, u and v hold its distance and barycentrics. The triangle
+// that the ray leaves is not: it is flat.
+INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *s, const Ray *r, float limit, float8 *t, float8 *u,
                                      float8 *v) {
     global const uchar *b1 = block + BLOCK_VERTEX_BYTES, *b2 = block + 2u * BLOCK_VERTEX_BYTES;
     float8 az = row8(block, s->kz) - s->oz, bz = row8(b1, s->kz) - s->oz, cz = row8(b2, s->kz) - s->oz;
@@ -76,15 +95,20 @@ INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *
     // Most blocks end here, before the division.
     uint inside = lane_bits8(((least >= 0.0f) | (most <= 0.0f)) & (det != 0.0f));
     if (LIKELY(inside == 0u)) return 0u;
-    float8 inverse = 1.0f / det;
-    *t = s->sz * madd8(wa, az, madd8(wb, bz, wc * cz)) * inverse;
+    inside &= lane_bits8(TRIANGLE_NUMBERS(*(global const uint8 *)(block + BLOCK_PRIMITIVE_BYTES)) != r->from);
+    float8 inverse = 1.0f / det, depth = s->sz * madd8(wa, az, madd8(wb, bz, wc * cz));
+    *t = depth * inverse;
     *u = wb * inverse;
     *v = wc * inverse;
-    uint mask = inside & lane_bits8((*t > 0.0f) & (*t < limit));
-    if (LIKELY(mask == 0u)) return 0u;
-    float8 error = distance_error(largest_of(ax, bx, cx), largest_of(ay, by, cy),
-                                  largest_of(az, bz, cz) * fabs(s->sz), largest_of(wa, wb, wc), inverse);
-    return mask & lane_bits8(*t > error);
+    inside &= lane_bits8(*t < limit);
+    if (LIKELY(inside == 0u)) return 0u;
+    float8 across = GREATER(largest_of(ax, bx, cx), largest_of(ay, by, cy));
+    float8 size = GREATER(across, largest_of(az, bz, cz) * fabs(s->sz));
+    int8 near = fabs(depth) <= BLOCK_DISTANCE_ERROR * across * size * size;
+    uint hits = inside & lane_bits8((*t > 0.0f) & !near);
+    uint unsure = inside & lane_bits8(near);
+    if (UNLIKELY(unsure)) hits |= hits_near_origin(block, unsure, r, limit, t);
+    return hits;
 }
 
 #endif

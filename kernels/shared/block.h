@@ -16,8 +16,8 @@
 #define TILE_Y(id) ((((id) >> 2) & 3u) | (((id) >> 4) & 12u))
 
 #define QUEUE_PADDING 16u     // vector stores may run past the last slot
-#define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h
-#define SHADOW_FIELDS 11u
+#define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h; one more with a light tree
+#define SHADOW_FIELDS 12u
 
 // Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.
 #define QUEUE_RAYS 0u
@@ -29,6 +29,11 @@
 #define QUEUE_SHADOW 6u
 #define QUEUE_COUNT 7u
 
+// Ranges of samples go to the two halves of the film in turn, and each half has a scramble of its own. Sample s of the
+// picture is sample HALF_INDEX(s) of half HALF_OF(s).
+#define HALF_OF(s) ((s) / BLOCK_SAMPLES & 1u)
+#define HALF_INDEX(s) ((s) / (2u * BLOCK_SAMPLES) * BLOCK_SAMPLES + (s) % BLOCK_SAMPLES)
+
 // What the host fills in to hand a block its work, and reads back to launch only what has something to do.
 struct BlockHeader {
     Uint32 tile_x, tile_y;     // film coordinates of the tile's first pixel
@@ -39,18 +44,22 @@ struct BlockHeader {
     Uint32 nonfinite_path;     // id of a path whose sample was not finite; WAVELOBE_NONE: none
     Uint32 started;            // camera rays of the last round
     Uint32 traced;             // all rays of the last round
-    Uint32 unused[1];
+    float error;               // of a scene with HAS_ERROR_ESTIMATE: relMSE of the tile so far
+    float error_deviation;     // standard error of that estimate
+    Uint32 unused[3];
 };
-WAVELOBE_CHECK_SIZE(BlockHeader, 64);
+WAVELOBE_CHECK_SIZE(BlockHeader, 80);
 
 // A tile and a range of its samples, for render_tiles: what BlockHeader says of it when a block takes it up.
 struct TileJob {
     Uint32 tile_x, tile_y;
     Uint32 first_sample;
     Uint32 path_count;
-    Uint32 nonfinite_path; // written when it is done
+    // Written when it is done:
+    Uint32 nonfinite_path;
+    float error, error_deviation;
 };
-WAVELOBE_CHECK_SIZE(TileJob, 20);
+WAVELOBE_CHECK_SIZE(TileJob, 28);
 
 struct TileQueue {
     Uint32 next;  // first job that no block has taken

@@ -23,17 +23,22 @@ WAVELOBE_CHECK_SIZE(BvhNode, 256);
 // Rows: x, y, z of the first, second and third vertex of eight triangles. Absent triangles are all zero, which no ray hits.
 struct TriangleBlock {
     float vertex[9][8];
-    Uint32 primitive[8];
+    Uint32 primitive[8]; // with PRIMITIVE_MASKED where rays may pass
 };
 WAVELOBE_CHECK_SIZE(TriangleBlock, 320);
+
+// Bit of a primitive's id in triangle blocks, few triangles and the analytic order: a ray that hits it asks for its opacity
+// (shapes/opacity.h).
+#define PRIMITIVE_MASKED 0x80000000u
 
 // Scenes of few triangles have no hierarchy: LANES rays at a time are tested against all of them. Corners are indices of
 // distinct vertices.
 struct FewTriangle {
     Uint32 corner[3];
-    Uint32 slot; // what a hit names
+    Uint32 slot;      // what a hit names
+    Uint32 primitive; // as in its triangle block
 };
-WAVELOBE_CHECK_SIZE(FewTriangle, 16);
+WAVELOBE_CHECK_SIZE(FewTriangle, 20);
 
 #define FEW_TRIANGLES_MAX 96u
 #define FEW_VERTICES_MAX 128u

@@ -15,7 +15,7 @@ WAVELOBE_CHECK_SIZE(AliasEntry, 8);
 // Which fields a kind uses is said in its lights/<name>.h.
 struct Light {
     Uint32 kind;                  // LIGHT_x of lights/lights.def
-    float selection_probability;  // of this light among all, by power
+    float selection_probability;  // of this light among all; not of those in a tree
     struct AliasEntry alias;      // row of this light in the selection table
     struct TexturedRgb radiance;  // W / (m^2 sr); point and spot: intensity, W / sr; directional: irradiance, W / m^2
     struct Packed3 position;      // first vertex; point, spot: where it is
@@ -26,8 +26,23 @@ struct Light {
     float uv[6];                  // of the three vertices (texture coordinates of a textured emitter)
     Uint32 analytic;              // index of its analytic shape
     float cos_cutoff, cos_beam;   // spot
+    Uint32 trail;                 // way to its leaf in the light tree, a bit a level, lowest first
 };
-WAVELOBE_CHECK_SIZE(Light, 120);
+WAVELOBE_CHECK_SIZE(Light, 124);
+
+// A node of the light tree: bounds on the lights below it.
+struct LightNode {
+    struct Packed3 center; // of a sphere about them
+    float radius;
+    struct Packed3 axis;   // unit, of the cone that holds their normals
+    float cos_spread, sin_spread; // of its half angle
+    float cos_emission;    // of the angle off a normal up to which they shine
+    float intensity;       // the greatest of all together, W / sr by luminance
+    Uint32 child;          // first of two neighbouring nodes, or LIGHT_LEAF | light
+};
+WAVELOBE_CHECK_SIZE(LightNode, 48);
+
+#define LIGHT_LEAF 0x80000000u
 
 // An analytic shape: unit sphere, unit disk in z = 0, or unit cylinder along z in [0, 1], under an affine map.
 struct Analytic {

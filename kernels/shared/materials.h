@@ -25,6 +25,14 @@ struct TexturedFloat {
     Uint32 texture;
 };
 
+// How much of a shape is there: rays pass it with probability 1 - opacity. One record a shape, in scenes with such shapes.
+struct Opacity {
+    struct TexturedFloat value;
+    float scale;  // of a texture's value
+    float cutoff; // at least 0: all there from this value on, and not at all below it; negative: none
+};
+WAVELOBE_CHECK_SIZE(Opacity, 16);
+
 struct Material {
     Uint32 lobes; // bit LOBE_x of bsdf/lobes.def for each lobe it has
     Uint32 flags;
@@ -38,8 +46,18 @@ struct Material {
     struct TexturedFloat exponent;   // Phong
     float diffuse_fresnel_internal;  // plastic: mean Fresnel reflectance from inside, cosine weighted
     float specular_weight;           // share of the specular lobe in lobe selection, from mean reflectances
+    Uint32 extension;                // record from which on the parameters lie that few materials have
 };
-WAVELOBE_CHECK_SIZE(Material, 112);
+WAVELOBE_CHECK_SIZE(Material, 116);
+
+// Extensions lie in the array of materials, in whole records; each lobe that has one says what is in it.
+
+// Rough plastic: the share of light that its surface lets through from outside, at cosines in equal steps from 0 to 1.
+#define ROUGH_TRANSMITTANCE_STEPS 64u
+struct RoughTransmittance {
+    float at[ROUGH_TRANSMITTANCE_STEPS];
+};
+WAVELOBE_CHECK_SIZE(RoughTransmittance, 256);
 
 struct Texture {
     Uint32 kind;         // TEXTURE_x

@@ -22,6 +22,8 @@ WAVELOBE_CHECK_SIZE(Shape, 32);
 #define SHAPE_HAS_GLOSSY 2u
 #define SHAPE_HAS_DIFFUSE 4u
 #define SHAPE_EMITS 8u
+#define SHAPE_MASKED 16u // rays ask for its opacity
+#define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
 
 // Perspective camera, film window, and the integrator's limits.
 struct RenderParameters {
@@ -34,10 +36,11 @@ struct RenderParameters {
     Uint32 max_depth; // vertices a path may have; at least 1
     Uint32 rr_depth;  // Russian roulette from this many vertices on
     Uint32 light_count;
+    Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
     Uint32 few_triangle_count, few_vertex_count; // of scenes without a hierarchy
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 116);
+WAVELOBE_CHECK_SIZE(RenderParameters, 120);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

@@ -5,6 +5,9 @@
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #include "stages/scene_view.h"
+#if HAS_ERROR_ESTIMATE
+#include "stages/tile_error.h"
+#endif
 
 INLINE uint is_finite(float x) { return (as_uint(x) & 0x7f800000u) != 0x7f800000u; }
 
@@ -15,12 +18,16 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
     if (h->path_count == 0u || h->next_path < h->path_count || pending != 0u) return 0u;
     global float *red = radiance_channel(block, 0u), *green = radiance_channel(block, 1u);
     global float *blue = radiance_channel(block, 2u);
+    global struct FilmPixel *film = scene->film;
+#if HAS_ERROR_ESTIMATE
+    film += HALF_OF(h->first_sample) * (size_t)parameters->window_width * parameters->window_height;
+#endif
     uint samples = 0u;
     for (uint pixel = 0u; pixel < TILE_PIXELS; pixel++) {
         uint x = h->tile_x + TILE_X(pixel) - parameters->window_x;
         uint y = h->tile_y + TILE_Y(pixel) - parameters->window_y;
         if (x >= parameters->window_width || y >= parameters->window_height) continue;
-        global struct FilmPixel *out = scene->film + (size_t)y * parameters->window_width + x;
+        global struct FilmPixel *out = film + (size_t)y * parameters->window_width + x;
         double r = out->sum[0], g = out->sum[1], b = out->sum[2];
         uint finite = 0u, nonfinite = 0u;
         for (uint id = pixel; id < h->path_count; id += TILE_PIXELS) {
@@ -40,6 +47,9 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
         out->nonfinite += nonfinite;
         samples += finite + nonfinite;
     }
+#if HAS_ERROR_ESTIMATE
+    estimate_tile_error(block, scene);
+#endif
     h->path_count = 0u; // free for the next tile
     return samples;
 }

@@ -26,6 +26,7 @@ INLINE uint append_rays(Queue rays, uint at, const TracedPath *path, const Surfa
                 bits);
     append_vec3(rays, PATH_DIRECTION, at, direction, bits);
     append_field(rays, PATH_T, at, (Float)INFINITY, bits);
+    append_uint(rays, PATH_HIT, at, surface->primitive, bits);
     append_vec3(rays, PATH_THROUGHPUT, at, throughput, bits);
     append_field(rays, PATH_PDF, at, pdf, bits);
     append_uint(rays, PATH_ID, at, path->id, bits);

@@ -15,7 +15,13 @@
 #define PAIR_SURVIVAL 3u  // which class of lobes; Russian roulette
 
 INLINE SampleId path_sample_id(Block block, UInt id, uint seed) {
-    return sample_id(path_pixel_x(block, id), path_pixel_y(block, id), path_sample(block, id), seed);
+    UInt sample = path_sample(block, id);
+#if HAS_ERROR_ESTIMATE
+    // Two pictures that share no random number.
+    sample = HALF_INDEX(sample);
+    seed ^= HALF_OF(block.header->first_sample) * 0x9e3779b9u;
+#endif
+    return sample_id(path_pixel_x(block, id), path_pixel_y(block, id), sample, seed);
 }
 
 INLINE UInt vertex_pair(UInt depth, uint pair) { return depth * PAIRS_PER_VERTEX + (UInt)(PAIRS_BEFORE_PATH + pair); }

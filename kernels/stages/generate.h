@@ -4,6 +4,7 @@
 
 #include "core/math.h"
 #include "sampling/warps.h"
+#include "shared/bvh.h"
 #include "stages/dimensions.h"
 #include "stages/scene_view.h"
 
@@ -38,6 +39,7 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
         append_vec3(rays, PATH_ORIGIN, count, scale_add(direction, stretch * p->near_clip, eye), bits);
         append_vec3(rays, PATH_DIRECTION, count, direction, bits);
         append_field(rays, PATH_T, count, stretch * (p->far_clip - p->near_clip), bits);
+        append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
         append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
         append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
         append_uint(rays, PATH_ID, count, id, bits);

@@ -6,11 +6,13 @@
 
 #if HAS_FEW_TRIANGLES
 // LANES rays at a time against everything.
-INLINE void intersect_rays(Geometry geometry, Queue rays) {
+INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
-        LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), read_vec3(rays, PATH_DIRECTION, i),
-                                     read_field(rays, PATH_T, i));
+        Vec3 direction = read_vec3(rays, PATH_DIRECTION, i);
+        LaneHit hit = closest_of_few(geometry, read_vec3(rays, PATH_ORIGIN, i), direction, read_field(rays, PATH_T, i),
+                                     read_uint(rays, PATH_HIT, i)
+                                     KEY_ARGUMENT(geometry, block, read_uint(rays, PATH_ID, i), direction));
         write_field(rays, PATH_T, i, hit.t);
         write_field(rays, PATH_U, i, hit.u);
         write_field(rays, PATH_V, i, hit.v);
@@ -19,10 +21,10 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 }
 #else
 // Ray by ray through the hierarchy.
-INLINE void intersect_rays(Geometry geometry, Queue rays) {
+INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, i);
+        Ray r = slot_ray(geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
         Hit hit = trace_closest(geometry, &r);
         set_slot(rays, PATH_T, i, hit.t);
         set_slot(rays, PATH_U, i, hit.u);
@@ -34,7 +36,7 @@ INLINE void intersect_rays(Geometry geometry, Queue rays) {
 
 INLINE uint run_intersect_closest(Block block, const SceneView *scene) {
     Queue rays = QUEUE(block, RAYS);
-    intersect_rays(scene->geometry, rays);
+    intersect_rays(scene->geometry, block, rays);
     return *rays.count;
 }
 

@@ -10,9 +10,10 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i += LANES) {
         Int live = lanes_below(i, n);
-        Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), read_vec3(shadow, SHADOW_DIRECTION, i),
-                                 read_field(shadow, SHADOW_T, i), live);
         UInt id = SELECT(live, read_uint(shadow, SHADOW_ID, i), (UInt)0u);
+        Vec3 direction = read_vec3(shadow, SHADOW_DIRECTION, i);
+        Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), direction, read_field(shadow, SHADOW_T, i),
+                                 read_uint(shadow, SHADOW_FROM, i), live KEY_ARGUMENT(geometry, block, id, direction));
         add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), lane_bits(live & !blocked));
     }
 }
@@ -21,7 +22,7 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, i);
+        Ray r = slot_ray(geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
         if (trace_any(geometry, &r)) continue;
         uint id = slot_uint(shadow, SHADOW_ID, i);
         for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[id] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);

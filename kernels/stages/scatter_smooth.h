@@ -13,17 +13,21 @@
 #define SHADOW_REACH (1.0f - 2.0f * GAMMA(16))
 
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
-INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, uint light_count,
-                                const TracedPath *path, const Surface *surface, const SmoothLobes *lobes) {
+INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, const TracedPath *path,
+                                const Surface *surface, const SmoothLobes *lobes, UInt receiver) {
     Float u_light = ZERO, u1, u2;
 #if LIGHT_COUNT > 1
-    Float unused;
-    sample_2d(sample, vertex_pair(path->depth, PAIR_CHOICE), &u_light, &unused);
+    Float u_deep; // for trees
+    sample_2d(sample, vertex_pair(path->depth, PAIR_CHOICE), &u_light, &u_deep);
 #endif
     sample_2d(sample, vertex_pair(path->depth, PAIR_LIGHT), &u1, &u2);
-    Float choice = choose_light(&in, light_count, u_light);
+#if HAS_LIGHT_TREE
+    Float choice = choose_light(&in, receiver_of(surface->position, receiver), u_light, u_deep);
+#else
+    Float choice = choose_light(&in, u_light);
+#endif
     LightSample light = sample_light(in, surface->position, u1, u2);
-    Int shines = path->live & (light.pdf > 0.0f) & (max_component(light.radiance) > 0.0f);
+    Int shines = path->live & (choice > 0.0f) & (light.pdf > 0.0f) & (max_component(light.radiance) > 0.0f);
     if (!any_lane(shines)) return at;
 
     LobeValue value = eval_smooth_lobes(lobes, surface->wi, to_local(surface->frame, light.direction));
@@ -45,6 +49,7 @@ INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId s
     append_field(shadow, SHADOW_T, at, SELECT(light.at_infinity, (Float)INFINITY, distance * SHADOW_REACH), bits);
     append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
     append_uint(shadow, SHADOW_ID, at, path->id, bits);
+    append_uint(shadow, SHADOW_FROM, at, surface->primitive, bits);
     return at + popcount(bits);
 }
 #endif
@@ -61,6 +66,21 @@ INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId samp
                                            : sample_diffuse_lobe(lobes, wi, u1, u2, u3);
 }
 
+// How the surface receives light: the code of its normal, or that of both sides.
+INLINE UInt surface_receiver(SurfaceView view, const Surface *surface) {
+#if HAS_LIGHT_TREE
+    UInt code = receiver_code(surface->frame.n);
+#if HAS_TRANSMISSION
+    UInt known = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
+    UInt flags = GATHER_UINT_FIELD(view.materials, Material, known, flags);
+    code = SELECT((flags & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u, (UInt)RECEIVER_ANY, code);
+#endif
+    return code;
+#else
+    return (UInt)0u;
+#endif
+}
+
 // The body of both stages: `lobe_class` is a constant.
 INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
@@ -73,8 +93,8 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
         SampleId sample = path_sample_id(block, path.id, parameters->seed);
 #if HAS_LIGHTS
-        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene->lights, sample, parameters->light_count,
-                                      &path, &surface, &lobes);
+        UInt receiver = surface_receiver(scene->surfaces, &surface);
+        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene->lights, sample, &path, &surface, &lobes, receiver);
 #endif
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
@@ -84,6 +104,9 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
         Vec3 direction = normalize3(to_world(surface.frame, wo));
+#if HAS_LIGHT_TREE
+        append_uint(rays, PATH_RECEIVER, appended, receiver, lane_bits(alive));
+#endif
         appended = append_rays(rays, appended, &path, &surface, direction, throughput, value.pdf, eta, alive);
     }
     *rays.count = appended;

@@ -30,13 +30,16 @@ INLINE uint run_shade_emitted(Block block, const SceneView *scene) {
         Int sampled = path.pdf >= 0.0f;
         Float weight = ONE;
         if (any_lane(facing & sampled)) {
+            // Where the path came from, to within the rounding of the hit.
 #if HAS_ANALYTIC
             Vec3 reference = path.origin;
 #else
-            Vec3 reference = vec3_all(ZERO); // flat lights do not ask for it
+            Vec3 reference = scale_add(path.direction, -path.t, surface.position);
 #endif
 #if LIGHT_COUNT == 1
             Float choice = ONE;
+#elif HAS_LIGHT_TREE
+            Float choice = placed_light_probability(in, receiver_of(reference, path.receiver), facing & sampled);
 #else
             Float choice = GATHER_FIELD(in.lights, Light, in.light, selection_probability);
 #endif

@@ -47,18 +47,38 @@ INLINE Continuation choose_class(Block block, uint seed, SurfaceView view, const
 }
 #endif
 
-#if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
-// Camera rays pass through lights: they are traced on from behind them.
-INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int hidden) {
-    uint bits = lane_bits(hidden);
+#if HAS_VEILED_EMITTERS
+#define PASSES_BEHIND 1
+
+// Lanes of `veiled`, which have hit an emitter that is only partly there, whose paths go on behind it.
+INLINE Int passes_veil(OpacityView o, Block block, SurfaceView view, Queue rays, uint i, Int veiled) {
     TracedPath path = read_traced_path(rays, i);
-    path.hit = SELECT(hidden, path.hit, (UInt)0u);
+    path.hit = SELECT(veiled, path.hit, (UInt)0u);
+    Surface surface = load_surface(view, &path);
+    // A path may meet both sides of a sphere.
+    UInt event = surface.primitive ^ mix_bits(as_UInt(path.t));
+    Float opacity = opacity_at(o, surface.shape, surface.u, surface.v);
+    return veiled & passes(ray_key(o, block, path.id, path.direction), event, opacity);
+}
+#else
+#define PASSES_BEHIND (HIDE_EMITTERS && HAS_SURFACE_LIGHTS)
+#endif
+
+#if PASSES_BEHIND
+// Paths that pass a light are traced on from behind it. No light sample sees through it: the next light they find is all
+// theirs.
+INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int passing) {
+    uint bits = lane_bits(passing);
+    TracedPath path = read_traced_path(rays, i);
+    path.hit = SELECT(passing, path.hit, (UInt)0u);
     Surface surface = load_surface(view, &path);
     at = move_paths(rays, at, rays, i, path.throughput, bits);
     uint first = at - popcount(bits);
     append_vec3(rays, PATH_ORIGIN, first,
                 offset_ray_origin(surface.position, surface.error, surface.normal, path.direction), bits);
     append_field(rays, PATH_T, first, (Float)INFINITY, bits);
+    append_uint(rays, PATH_HIT, first, surface.primitive, bits);
+    append_field(rays, PATH_PDF, first, (Float)-1.0f, bits);
     return at;
 }
 #endif
@@ -84,12 +104,22 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
 #endif
         UInt depth = read_uint(rays, PATH_DEPTH, i);
 #if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
-        Int hidden = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u) & (depth == (UInt)0u);
-        found &= !hidden;
+        Int passing = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u) & (depth == (UInt)0u);
+        found &= !passing;
+#elif PASSES_BEHIND
+        Int passing = !TRUE_MASK;
 #endif
 #if HAS_SURFACE_LIGHTS
         uint lit = lane_bits(found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u));
         if (lit) emitted = move_paths(QUEUE(block, EMITTED), emitted, rays, i, throughput, lit);
+#endif
+#if HAS_VEILED_EMITTERS
+        Int veiled = found & ((flags & (UInt)SHAPE_VEILED) != (UInt)0u);
+        if (any_lane(veiled)) {
+            Int behind = passes_veil(scene->geometry.opacity, block, view, rays, i, veiled);
+            found &= !behind;
+            passing |= behind;
+        }
 #endif
         Int scattering = found & (depth + (UInt)1u < (UInt)parameters->max_depth);
         Continuation c;
@@ -116,9 +146,9 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         uint f = lane_bits(c.diffuse);
         if (f) diffuse = move_paths(QUEUE(block, DIFFUSE), diffuse, rays, i, c.throughput, f);
 #endif
-#if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
+#if PASSES_BEHIND
         // Last, because it writes over slots of this group and earlier ones.
-        if (any_lane(hidden)) passed = pass_through(rays, passed, i, view, hidden);
+        if (any_lane(passing)) passed = pass_through(rays, passed, i, view, passing);
 #endif
     }
     block.header->traced = n;

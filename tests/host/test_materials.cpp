@@ -30,6 +30,10 @@ TEST(Materials, Defaults) {
     const auto plastic = model_of<Plastic>(R"(<bsdf type="plastic"/>)");
     EXPECT_FLOAT_EQ(plastic.eta, 1.49F / 1.000277F);
     EXPECT_FALSE(plastic.nonlinear);
+    const auto rough_plastic = model_of<RoughPlastic>(R"(<bsdf type="roughplastic"/>)");
+    EXPECT_FLOAT_EQ(rough_plastic.eta, 1.49F / 1.000277F);
+    EXPECT_EQ(rough_plastic.alpha, 0.1F);
+    EXPECT_EQ(rough_plastic.distribution, Distribution::beckmann);
     const auto phong = model_of<Phong>(R"(<bsdf type="phong"/>)");
     EXPECT_EQ(phong.diffuse_reflectance.value, Rgb(0.5F));
     EXPECT_EQ(phong.specular_reflectance.value, Rgb(0.2F));
@@ -105,6 +109,57 @@ TEST(Materials, UnusedMaterialsStayOut) {
     const Scene scene = SceneFolder().elements(R"(<bsdf type="conductor" id="unused"/>
         <shape type="sphere"/><shape type="disk"/><bsdf type="diffuse" id="also-unused"/>)");
     EXPECT_EQ(scene.materials.size(), 1U);
+}
+
+// ---- mask and null ----------------------------------------------------------------------------------------------
+
+SurfaceMaterial surface_of(const std::string& xml) { return with_bsdf(xml).shapes.at(0).material; }
+
+TEST(Materials, MaskHoldsItsOpacityBesideTheMaterial) {
+    EXPECT_EQ(surface_of(R"(<bsdf type="diffuse"/>)").opacity.value.value, Rgb(1.0F));
+    const SurfaceMaterial plain = surface_of(R"(<bsdf type="mask"><bsdf type="diffuse"/></bsdf>)");
+    EXPECT_EQ(plain.opacity.value.value, Rgb(0.5F));
+    EXPECT_EQ(plain.front, 0);
+    EXPECT_EQ(plain.back, -1);
+    const SurfaceMaterial both = surface_of(
+        R"(<bsdf type="mask"><float name="opacity" value="0.25"/><bsdf type="twosided"><bsdf type="diffuse"/></bsdf></bsdf>)");
+    EXPECT_EQ(both.opacity.value.value, Rgb(0.25F));
+    EXPECT_EQ(both.back, 0);
+    EXPECT_FALSE(both.opacity.cutoff.has_value());
+    const SurfaceMaterial textured = surface_of(
+        R"(<bsdf type="mask"><texture type="checkerboard" name="opacity"/><bsdf type="dielectric"/></bsdf>)");
+    ASSERT_TRUE(textured.opacity.value.texture != nullptr);
+    EXPECT_EQ(textured.opacity.texture_scale, 1.0F);
+}
+
+// One nested BSDF is shared by a shape with a mask and one without.
+TEST(Materials, MaskDoesNotMarkTheMaterialItHolds) {
+    const Scene scene = SceneFolder().elements(R"(<bsdf type="diffuse" id="d"/>
+        <shape type="sphere"><ref id="d"/></shape>
+        <shape type="sphere"><bsdf type="mask"><ref id="d"/></bsdf></shape>)");
+    EXPECT_EQ(scene.materials.size(), 1U);
+    EXPECT_EQ(scene.shapes.at(0).material.opacity.value.value, Rgb(1.0F));
+    EXPECT_EQ(scene.shapes.at(1).material.opacity.value.value, Rgb(0.5F));
+}
+
+TEST(Materials, NullIsNotThere) {
+    EXPECT_EQ(surface_of(R"(<bsdf type="null"/>)").opacity.value.value, Rgb(0.0F));
+    EXPECT_EQ(surface_of(R"(<bsdf type="mask"><float name="opacity" value="0.75"/><bsdf type="null"/></bsdf>)").opacity.value.value,
+              Rgb(0.0F));
+}
+
+TEST(Materials, MaskFaults) {
+    const auto faults = [](const std::string& xml) {
+        return SceneFolder().element_faults("<shape type=\"sphere\">" + xml + "</shape>");
+    };
+    EXPECT_TRUE(has_text(faults(R"(<bsdf type="mask"/>)"), "holds 0 nested BSDFs; expected one"));
+    EXPECT_TRUE(has_text(faults(R"(<bsdf type="mask"><bsdf type="diffuse"/><bsdf type="diffuse"/></bsdf>)"),
+                         "holds 2 nested BSDFs; expected one"));
+    EXPECT_TRUE(has_text(faults(R"(<bsdf type="mask"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>)"),
+                         "holds another mask"));
+    EXPECT_TRUE(has_text(faults(R"(<bsdf type="twosided"><bsdf type="mask"><bsdf type="diffuse"/></bsdf></bsdf>)"),
+                         "holds a BSDF that transmits light"));
+    EXPECT_TRUE(has_text(faults(R"(<bsdf type="null"><float name="opacity" value="1"/></bsdf>)"), "opacity"));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ const char* const source = R"(
 kernel void intersect(global const struct Analytic *shapes, global const uint *shape, global const float *rays, uint n,
                       global float *t) {
     size_t i = get_global_id(0);
-    Ray r = {rays[i], rays[i + n], rays[i + 2 * n], rays[i + 3 * n], rays[i + 4 * n], rays[i + 5 * n], rays[i + 6 * n]};
-    t[i] = intersect_analytic(shapes + shape[i], &r, r.limit);
+    Ray r = {rays[i], rays[i + n], rays[i + 2 * n], rays[i + 3 * n], rays[i + 4 * n], rays[i + 5 * n], rays[i + 6 * n], HIT_NONE};
+    t[i] = intersect_analytic(shapes + shape[i], &r, 0.0f, r.limit);
 }
 
 INLINE void store3(global float *p, uint n, Vec3 v) {

@@ -24,8 +24,8 @@ kernel void trace(global const float *vertices, global const struct FewTriangle 
     uint first = (uint)get_global_id(0) * 16u;
     for (uint i = first; i < first + 16u; i += LANES) {
         Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
-        LaneHit hit = closest_of_few(geometry, origin, direction, RAY(6));
-        Int any = any_of_few(geometry, origin, direction, RAY(6), TRUE_MASK);
+        LaneHit hit = closest_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)));
+        Int any = any_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)), TRUE_MASK);
         store(hits + i, hit.t);
         store(hits + count + i, hit.u);
         store(hits + 2 * count + i, hit.v);
@@ -42,13 +42,14 @@ public:
 
     std::vector<TestHit> trace(const FewTriangleSet& few, const std::vector<TestRay>& rays) {
         const std::size_t count = (rays.size() + 15) / 16 * 16;
-        std::vector<float> packed(7 * count, 0.0F);
+        std::vector<float> packed(8 * count, 0.0F);
         for (std::size_t i = 0; i < rays.size(); ++i) {
             for (std::size_t k = 0; k < 3; ++k) {
                 packed[k * count + i] = rays[i].origin[static_cast<glm::length_t>(k)];
                 packed[(3 + k) * count + i] = rays[i].direction[static_cast<glm::length_t>(k)];
             }
             packed[6 * count + i] = rays[i].limit;
+            std::memcpy(&packed[7 * count + i], &rays[i].from, sizeof(float));
         }
         std::vector<float> hits(5 * count);
         const auto vertex_count = static_cast<cl_uint>(few.vertices.size() / 3);

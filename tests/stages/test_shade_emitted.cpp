@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "support/light_tree_reference.h"
 #include "support/stage.h"
 
 namespace wavelobe::test {
@@ -67,7 +68,12 @@ TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
             for (std::uint32_t c = 0; c < 3; ++c) bench.radiance(8, c) = 0.0F;
             bench.fill(QUEUE_EMITTED, {p});
             bench.run("shade_emitted");
-            const double choice = static_cast<double>(bench.scene().lights[lights[triangle]].selection_probability);
+            // Its place is that of barycentric coordinates of a quarter each.
+            const std::span<const glm::vec3, 3> t = bench.scene().triangles[triangle];
+            const glm::dvec3 hit = 0.5 * glm::dvec3(t[0]) + 0.25 * glm::dvec3(t[1]) + 0.25 * glm::dvec3(t[2]);
+            const double choice = reference_probability(bench.scene().light_tree, bench.scene().lights[lights[triangle]].trail,
+                                                        hit - 4.0 * glm::normalize(glm::dvec3(direction)), std::nullopt);
+            ASSERT_GT(choice, 0.0);
             const double light = choice * 16.0 / (cosine * areas[triangle]);
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);
             const Rgb radiance = triangle < 2 ? first_radiance : second_radiance;

@@ -45,7 +45,7 @@ TEST_P(ShadeEscaped, WeighsAgainstTheLightSample) {
         scene.emitters.emplace_back(ConstantEmitter{sky});
         if (!alone) scene.emitters.emplace_back(PointEmitter{{0, 1, 0}, Rgb{3.0F}});
         StageBench bench(scene, GetParam());
-        const double choice = static_cast<double>(bench.scene().lights[0].selection_probability);
+        const double choice = static_cast<double>(bench.scene().lights.back().selection_probability);
         EXPECT_EQ(alone, choice == 1.0);
         for (const float pdf : {0.01F, 0.2F, 1e6F}) {
             const std::vector<TestPath> paths = escaped(5, pdf);

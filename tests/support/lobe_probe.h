@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "shared/materials.h"
+#include "support/lobe_extensions.h"
 #include "support/probe.h"
 
 namespace wavelobe::test {
@@ -100,7 +101,8 @@ private:
         const auto count = static_cast<std::uint32_t>(n);
         const std::vector<float>& input = in;
         const std::vector<std::uint32_t>& indices = index;
-        probe_.run(kernel, n / static_cast<std::size_t>(lanes_), count, materials, indices, input, out);
+        const std::vector<Material> records = with_extensions(materials);
+        probe_.run(kernel, n / static_cast<std::size_t>(lanes_), count, records, indices, input, out);
         return out;
     }
 

@@ -12,6 +12,7 @@
 #include <glm/glm.hpp>
 
 #include "shared/materials.h"
+#include "support/lobe_extensions.h"
 
 namespace wavelobe::test {
 
@@ -116,6 +117,16 @@ inline ReferenceValue reference_phong(const ::Material& m, const glm::dvec3& wi,
     return {to_double(m.specular.value) * ((n + 2.0) / (2.0 * pi) * power * wo.z), (n + 1.0) / (2.0 * pi) * power};
 }
 
+inline ReferenceValue reference_rough_plastic_coat(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = reference_density(m, h);
+    const double g = reference_masking(m, wi, false) * reference_masking(m, wo, false);
+    const double fresnel = reference_fresnel_dielectric(glm::dot(wi, h), m.eta.x);
+    return {to_double(m.specular.value) * (fresnel * d * g / (4.0 * wi.z)),
+            d * reference_masking(m, wi, true) / (4.0 * wi.z)};
+}
+
 inline ReferenceValue reference_lambert(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
     return {to_double(m.diffuse.value) * (wo.z / pi), wo.z / pi};
@@ -132,6 +143,25 @@ inline ReferenceValue reference_plastic_base(const ::Material& m, const glm::dve
             wo.z / pi};
 }
 
+inline double reference_rough_transmittance(const ::Material& m, double cosine) {
+    const auto& table = extension_of<RoughTransmittance>(m).at;
+    const double at = std::min(cosine, 1.0) * (ROUGH_TRANSMITTANCE_STEPS - 1);
+    const auto step = std::min(static_cast<std::size_t>(at), std::size_t{ROUGH_TRANSMITTANCE_STEPS - 2});
+    const double share = at - static_cast<double>(step);
+    return (1.0 - share) * table[step] + share * table[step + 1];
+}
+
+inline ReferenceValue reference_rough_plastic_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    const double eta = m.eta.x;
+    const glm::dvec3 diffuse = to_double(m.diffuse.value);
+    const glm::dvec3 tint = m.flags & MATERIAL_NONLINEAR ? diffuse : glm::dvec3{1.0};
+    const double transmitted =
+        reference_rough_transmittance(m, wi.z) * reference_rough_transmittance(m, wo.z) / (eta * eta);
+    return {diffuse / (1.0 - tint * static_cast<double>(m.diffuse_fresnel_internal)) * (transmitted * wo.z / pi),
+            wo.z / pi};
+}
+
 using ReferenceEval = std::function<ReferenceValue(const ::Material&, const glm::dvec3&, const glm::dvec3&)>;
 
 // By the name of the lobe.
@@ -139,7 +169,8 @@ inline const std::map<std::string, ReferenceEval>& reference_evals() {
     static const std::map<std::string, ReferenceEval> evals{
         {"rough_conductor", reference_rough_conductor}, {"rough_dielectric", reference_rough_dielectric},
         {"phong", reference_phong},                     {"lambert", reference_lambert},
-        {"plastic_base", reference_plastic_base},
+        {"plastic_base", reference_plastic_base},       {"rough_plastic_coat", reference_rough_plastic_coat},
+        {"rough_plastic_base", reference_rough_plastic_base},
     };
     return evals;
 }

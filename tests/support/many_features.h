@@ -44,9 +44,16 @@ inline Scene many_features_scene(int width, int height) {
     const int pane = add_material(scene, ThinDielectric{});
     add_quad(scene, {-2.2F, 0, 0.5F}, {0, 0, 1}, {0, 1.5F, 0}, pane).material.back = pane;
 
+    // Only partly there: a screen by its texture, a sphere and, below, a light by a number.
+    Opacity& screen = add_quad(scene, {0.6F, 0, 2.2F}, {1, 0, 0}, {0, 0.8F, 0}, add_diffuse(scene, {0.7F, 0.6F, 0.2F})).material.opacity;
+    screen.value.texture = board;
+    screen.texture_scale = 1.2F;
+    add_sphere(scene, {-0.3F, 0.3F, 2.2F}, 0.3F, add_diffuse(scene, {0.2F, 0.7F, 0.3F})).material.opacity.value.value = Rgb{0.5F};
+
     const int black = add_diffuse(scene, Rgb{0});
     make_emitter(add_quad(scene, {-0.5F, 2.8F, 0}, {1, 0, 0}, {0, 0, 1}, black), {8, 7, 6});
     make_emitter(add_sphere(scene, {-1.8F, 2.2F, 0.5F}, 0.15F, black), {20, 10, 5});
+    scene.shapes.back().material.opacity.value.value = Rgb{0.5F};
     scene.emitters.emplace_back(ConstantEmitter{{0.1F, 0.15F, 0.2F}});
     scene.emitters.emplace_back(PointEmitter{{0, 2.2F, 2.5F}, {1, 1, 1}});
     scene.emitters.emplace_back(DirectionalEmitter{glm::normalize(glm::vec3{0.4F, -1, -0.3F}), {0.5F, 0.5F, 0.4F}});

@@ -29,6 +29,7 @@ struct TestPath {
     std::uint32_t id = 0;
     std::uint32_t depth = 0;
     float eta = 1.0F;     // only in scenes with transmission
+    std::uint32_t receiver = 0xffffffffU;  // only in scenes with a light tree; by itself: both sides
     glm::vec3 origin{0};  // traced paths keep it only in scenes with analytic shapes
 };
 
@@ -38,6 +39,7 @@ struct TestShadowRay {
     glm::vec3 contribution{1};
     std::uint32_t id = 0;
     glm::vec3 origin{0};
+    std::uint32_t from = HIT_NONE;
 };
 
 class StageBench {
@@ -49,7 +51,7 @@ public:
         : scene_(flatten_scene(scene)), buffers_(device()) {
         const Bvh bvh = build_scene_bvh(scene_, 1);
         for (const TriangleBlock& block : bvh.blocks) {
-            primitives_.insert(primitives_.end(), block.primitive, block.primitive + BVH_WIDTH);
+            for (const std::uint32_t primitive : block.primitive) primitives_.push_back(primitive & ~PRIMITIVE_MASKED);
         }
         const FewTriangleSet set = few ? find_few_triangles(bvh) : FewTriangleSet{};
         scene_.features.few_triangles = few;
@@ -103,6 +105,7 @@ public:
         set_bits(queue, layout_[path_id], slot, p.id);
         set_bits(queue, layout_[path_depth], slot, p.depth);
         set(queue, layout_[path_eta], slot, p.eta);
+        if (scene_.features.light_tree) set_bits(queue, layout_[path_receiver], slot, p.receiver);
         if (keeps_origin(queue)) set_vector(queue, layout_[path_origin], slot, p.origin);
     }
 
@@ -117,6 +120,7 @@ public:
                 get_bits(queue, layout_[path_id], slot),
                 get_bits(queue, layout_[path_depth], slot),
                 get(queue, layout_[path_eta], slot),
+                scene_.features.light_tree ? get_bits(queue, layout_[path_receiver], slot) : 0U,
                 keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0}};
     }
 
@@ -127,6 +131,7 @@ public:
             set_vector(QUEUE_SHADOW, layout_[shadow_contribution], i, rays[i].contribution);
             set_bits(QUEUE_SHADOW, layout_[shadow_id], i, rays[i].id);
             set_vector(QUEUE_SHADOW, layout_[shadow_origin], i, rays[i].origin);
+            set_bits(QUEUE_SHADOW, layout_[shadow_from], i, rays[i].from);
         }
         header().count[QUEUE_SHADOW] = static_cast<std::uint32_t>(rays.size());
     }
@@ -135,7 +140,8 @@ public:
         return {get(QUEUE_SHADOW, layout_[shadow_t], slot), get_vector(QUEUE_SHADOW, layout_[shadow_direction], slot),
                 get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot),
                 get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
-                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot)};
+                get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot),
+                get_bits(QUEUE_SHADOW, layout_[shadow_from], slot)};
     }
 
     std::vector<std::uint32_t> ids(std::uint32_t queue) {
@@ -166,20 +172,25 @@ private:
         path_id,
         path_depth,
         path_eta,
+        path_receiver,
         path_origin,
         shadow_t,
         shadow_direction,
         shadow_contribution,
         shadow_id,
         shadow_origin,
+        shadow_from,
         layout_size
     };
     static constexpr const char* layout_source = R"(
+#if !HAS_LIGHT_TREE
+#define PATH_RECEIVER 0u
+#endif
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
-                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_ORIGIN, SHADOW_T,
-                           SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN};
+                           PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
+                           SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";

@@ -15,6 +15,7 @@ struct TestRay {
     glm::vec3 origin;
     glm::vec3 direction;
     float limit = std::numeric_limits<float>::infinity();
+    std::uint32_t from = HIT_NONE;  // what it leaves
 };
 
 struct TestHit {
@@ -54,8 +55,8 @@ kernel void trace(global const uchar *nodes, global const uchar *blocks, global 
     Geometry geometry = {nodes, blocks};
     uint first = (uint)get_global_id(0) * 256u;
     for (uint i = first; i < min(first + 256u, count); i++) {
-        global const float *p = rays + (size_t)i * 7u;
-        Ray ray = {p[0], p[1], p[2], p[3], p[4], p[5], p[6]};
+        global const float *p = rays + (size_t)i * 8u;
+        Ray ray = {p[0], p[1], p[2], p[3], p[4], p[5], p[6], as_uint(p[7])};
         Hit h = trace_closest(geometry, &ray);
         TestHit out = {h.t, h.u, h.v, h.primitive, trace_any(geometry, &ray)};
         hits[i] = out;

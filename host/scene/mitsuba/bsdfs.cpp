@@ -1,4 +1,5 @@
 // The BSDF plugins.
+#include <algorithm>
 #include <array>
 
 #include "scene/conductors.h"
@@ -53,11 +54,14 @@ struct Roughness {
     Distribution distribution = Distribution::beckmann;
 };
 
+Distribution distribution(Query& query) {
+    query.boolean("sample_visible", true);
+    return query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
+}
+
 Roughness roughness(Query& query) {
     Roughness result;
-    result.distribution =
-        query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
-    query.boolean("sample_visible", true);
+    result.distribution = distribution(query);
     const bool two = query.has("alpha_u") || query.has("alpha_v");
     if (two && !(query.has("alpha_u") && query.has("alpha_v")))
         query.fault("only one of `alpha_u` and `alpha_v` is given", "give both, or `alpha` alone");
@@ -128,6 +132,21 @@ Bsdf read_plastic(Query& query) {
     return make(query, Plastic{eta, diffuse, specular, query.boolean("nonlinear", false)}, Sides::front);
 }
 
+Bsdf read_rough_plastic(Query& query) {
+    RoughPlastic m;
+    m.eta = relative_index(query, "polypropylene");
+    if (m.eta == 1.0F)
+        query.fault("the indices of refraction inside and outside are equal", "let `int_ior` and `ext_ior` differ");
+    m.diffuse_reflectance = reflectance(query, "diffuse_reflectance", 0.5);
+    m.specular_reflectance = reflectance(query, "specular_reflectance", 1.0);
+    m.nonlinear = query.boolean("nonlinear", false);
+    m.distribution = distribution(query);
+    for (const char* name : {"alpha_u", "alpha_v"})
+        if (query.has(name)) query.fault_at(name, "rough plastic is isotropic", "give `alpha` alone");
+    m.alpha = static_cast<float>(std::max(query.real("alpha", 0.1, not_negative), 1e-4));
+    return make(query, m, Sides::front);
+}
+
 // A plugin of Mitsuba 0.x, whose spelling of the names is accepted next to today's.
 Bsdf read_phong(Query& query) {
     const auto either = [&](const std::string& name, const std::string& old_name, double otherwise) {
@@ -161,18 +180,48 @@ Bsdf read_twosided(Query& query) {
     return {front.front, back.front, false};
 }
 
+Bsdf read_mask(Query& query) {
+    Bsdf masked;
+    const Parameter opacity = query.scalar_parameter("opacity", 0.5, {});
+    const std::vector<const Child*> nested = query.children("bsdf");
+    if (query.has_unresolved_children()) return {};
+    if (nested.size() != 1) {
+        query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one, which `opacity` masks", "");
+        return {};
+    }
+    if (nested.front()->object->type == "mask") {
+        query.fault("holds another mask; only one can be applied", "multiply the two opacities into one mask");
+        return {};
+    }
+    masked = read_bsdf(query.context(), *nested.front()->object);
+    masked.transmissive = true;
+    // A mask of nothing is nothing.
+    if (nested.front()->object->type != "null") masked.opacity.value = opacity;
+    return masked;
+}
+
+// A surface that is not there. Where it emits, it is black otherwise.
+Bsdf read_null(Query& query) {
+    Bsdf nothing = make(query, Diffuse{Parameter{Rgb(0.0F), nullptr}}, Sides::both);
+    nothing.opacity.value.value = Rgb(0.0F);
+    return nothing;
+}
+
 struct Plugin {
     const char* name;
     Bsdf (*read)(Query&);
 };
-constexpr std::array<Plugin, 9> plugins{{
+constexpr std::array<Plugin, 12> plugins{{
     {"conductor", read_conductor},
     {"dielectric", read_dielectric},
     {"diffuse", read_diffuse},
+    {"mask", read_mask},
+    {"null", read_null},
     {"phong", read_phong},
     {"plastic", read_plastic},
     {"roughconductor", read_rough_conductor},
     {"roughdielectric", read_rough_dielectric},
+    {"roughplastic", read_rough_plastic},
     {"thindielectric", read_thin_dielectric},
     {"twosided", read_twosided},
 }};

@@ -17,6 +17,7 @@ struct Bsdf {
     std::shared_ptr<const Material> front;
     std::shared_ptr<const Material> back;  // null: black
     bool transmissive = false;
+    Opacity opacity{};
 };
 
 struct Context {

@@ -194,7 +194,7 @@ void read_shape(Context& context, const Object& object) {
     query.accept({"silhouette_sampling_weight"});
     query.finish();
     if (!usable || bsdf.front == nullptr) return;
-    shape.material = {material_index(context, bsdf.front), material_index(context, bsdf.back)};
+    shape.material = {material_index(context, bsdf.front), material_index(context, bsdf.back), bsdf.opacity};
     context.scene.shapes.push_back(std::move(shape));
 }
 

@@ -1,0 +1,95 @@
+#include "our_kernels.h"
+
+namespace wavelobe::benchmark {
+namespace {
+
+constexpr std::size_t rays_per_item = 512;  // as many as a block holds
+
+const char* const source = R"(
+#define HAS_ANALYTIC 0
+#define BVH_STACK 512u
+#define RAY(k) rays[(size_t)(k) * count + i]
+
+#if HAS_FEW_TRIANGLES
+#include "shapes/few_triangles.h"
+#define LANE_RAY(k) load(&RAY(k))
+#define LOOP_STEP LANES
+#define GEOMETRY FewTriangles geometry = {few_vertices, few_triangles, few_vertex_count, few_triangle_count}
+#define TRACE_RAYS                                                                                             \
+    Vec3 origin = vec3(LANE_RAY(0), LANE_RAY(1), LANE_RAY(2)), along = vec3(LANE_RAY(3), LANE_RAY(4), LANE_RAY(5))
+#else
+#include "shapes/traversal.h"
+#define LOOP_STEP 1u
+#define GEOMETRY Geometry geometry = {nodes, blocks}
+#define TRACE_RAYS Ray ray = {RAY(0), RAY(1), RAY(2), RAY(3), RAY(4), RAY(5), RAY(6), as_uint(RAY(7))}
+#endif
+
+#define PARAMETERS                                                                                             \
+    global const uchar *nodes, global const uchar *blocks, global const float *few_vertices,                   \
+        global const struct FewTriangle *few_triangles, uint few_vertex_count, uint few_triangle_count,        \
+        global const float *rays, uint count, global float *hits
+#define FOR_RAYS                                                                                               \
+    GEOMETRY;                                                                                                  \
+    uint first = (uint)get_global_id(0) * 512u, last = min(first + 512u, count);                               \
+    for (uint i = first; i < last; i += LOOP_STEP)
+
+kernel void closest_hits(PARAMETERS) {
+    FOR_RAYS {
+        TRACE_RAYS;
+#if HAS_FEW_TRIANGLES
+        LaneHit hit = closest_of_few(geometry, origin, along, LANE_RAY(6), as_UInt(LANE_RAY(7)));
+        store(hits + i, hit.t);
+        store(hits + count + i, as_Float(hit.slot));
+#else
+        Hit hit = trace_closest(geometry, &ray);
+        hits[i] = hit.t;
+        hits[count + i] = as_float(hit.primitive);
+#endif
+    }
+}
+
+kernel void any_hits(PARAMETERS) {
+    FOR_RAYS {
+        TRACE_RAYS;
+#if HAS_FEW_TRIANGLES
+        Int blocked = any_of_few(geometry, origin, along, LANE_RAY(6), as_UInt(LANE_RAY(7)), TRUE_MASK);
+        store(hits + i, SELECT(blocked, (Float)-INFINITY, LANE_RAY(6)));
+#else
+        hits[i] = trace_any(geometry, &ray) ? -INFINITY : RAY(6);
+#endif
+    }
+}
+)";
+
+void set_mesh(Kernel& kernel, const MeshBuffers& mesh) {
+    kernel.set(0, mesh.nodes.memory());
+    kernel.set(1, mesh.blocks.memory());
+    kernel.set(2, mesh.few_vertices.memory());
+    kernel.set(3, mesh.few_triangles.memory());
+    kernel.set(4, mesh.few_vertex_count);
+    kernel.set(5, mesh.few_triangle_count);
+}
+
+}  // namespace
+
+OurKernels::OurKernels(const Device& device, const MeshBuffers& mesh, const std::string& defines)
+    : device_(device),
+      program_(device, source, "traversal_benchmark.cl",
+               std::string("-DLANES=16 -DHAS_FEW_TRIANGLES=") + (mesh.few ? "1 " : "0 ") + defines),
+      closest_(program_, "closest_hits"),
+      any_(program_, "any_hits") {
+    set_mesh(closest_, mesh);
+    set_mesh(any_, mesh);
+}
+
+double OurKernels::trace(bool any_hit, std::size_t count, const Buffer& rays, const Buffer& hits) {
+    Kernel& kernel = any_hit ? any_ : closest_;
+    kernel.set(6, rays.memory());
+    kernel.set(7, static_cast<cl_uint>(count));
+    kernel.set(8, hits.memory());
+    const ClEvent event = kernel.launch(device_, (count + rays_per_item - 1) / rays_per_item);
+    device_.finish();
+    return event_seconds(event);
+}
+
+}  // namespace wavelobe::benchmark

@@ -1,0 +1,179 @@
+// Walks down a light tree: the light and probability they give against double precision, counts against probabilities.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "support/light_tree_reference.h"
+#include "support/probe.h"
+#include "support/statistics.h"
+
+namespace wavelobe::test {
+namespace {
+
+constexpr float below_one = 0x1.fffffep-1F;
+
+struct Walk {
+    Uint32 light;
+    float probability;
+    float by_trail;     // of the same light
+    glm::vec3 normal;   // as the receiver's code has it
+};
+
+struct WalkQuery {
+    glm::vec3 position, normal;
+    bool any_side;
+    float u, deep;
+};
+
+std::vector<Walk> walk(const LightTree& tree, const std::vector<WalkQuery>& queries, int lanes = 16) {
+    Probe probe(R"(
+#include "lights/light_tree.h"
+#define IN(k) load(query + i + (k) * n)
+kernel void run(global const struct LightNode *tree, global const uint *trails, global const float *query, uint n,
+                global float *out) {
+    size_t i = get_global_id(0) * LANES;
+    Vec3 normal = vec3(IN(3), IN(4), IN(5));
+    UInt code = SELECT(IN(6) > 0.0f, (UInt)RECEIVER_ANY, receiver_code(normal));
+    Receiver r = receiver_of(vec3(IN(0), IN(1), IN(2)), code);
+    UInt light;
+    Float p = walk_light_tree(tree, r, IN(7), IN(8), &light);
+    UInt trail = gather_uint(trails, light);
+    store(out + i, as_Float(light));
+    store(out + i + n, p);
+    store(out + i + 2 * n, light_tree_probability(tree, r, trail, TRUE_MASK));
+    store(out + i + 3 * n, r.normal.x);
+    store(out + i + 4 * n, r.normal.y);
+    store(out + i + 5 * n, r.normal.z);
+})",
+                {.lanes = lanes, .defines = ""});
+    const std::size_t n = (queries.size() + 15) / 16 * 16;
+    std::vector<float> data(9 * n, 0.5F);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const WalkQuery& q = queries[i];
+        const float values[] = {q.position.x, q.position.y, q.position.z, q.normal.x, q.normal.y,
+                                q.normal.z,   q.any_side ? 1.0F : 0.0F,   q.u,        q.deep};
+        for (std::size_t k = 0; k < 9; ++k) data[k * n + i] = values[k];
+    }
+    std::vector<float> out(6 * n);
+    const auto count = static_cast<cl_uint>(n);
+    const std::vector<LightNode> nodes = tree.nodes;
+    const std::vector<Uint32> trails = tree.trails;
+    const std::vector<float> query = data;
+    probe.run("run", n / static_cast<std::size_t>(lanes), nodes, trails, query, count, out);
+    std::vector<Walk> walks(queries.size());
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+        std::memcpy(&walks[i].light, &out[i], sizeof(float));
+        walks[i].probability = out[n + i];
+        walks[i].by_trail = out[2 * n + i];
+        walks[i].normal = {out[3 * n + i], out[4 * n + i], out[5 * n + i]};
+    }
+    return walks;
+}
+
+std::vector<WalkQuery> random_queries(std::size_t count, unsigned seed, const WalkQuery* fixed = nullptr) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    const auto number = [&] { return std::min(0.5F + 0.5F * unit(random), below_one); };
+    std::vector<WalkQuery> queries(count);
+    for (WalkQuery& q : queries) {
+        q.position = 12.0F * glm::vec3(unit(random), unit(random), unit(random));
+        q.normal = glm::normalize(glm::vec3(unit(random), unit(random), unit(random)) + glm::vec3(1e-3F));
+        q.any_side = unit(random) > 0.6F;
+        if (fixed != nullptr) q = *fixed;
+        q.u = number();
+        q.deep = number();
+    }
+    return queries;
+}
+
+TEST(LightTreeWalk, ProbabilitiesAreThoseOfDoublePrecision) {
+    const LightTree tree = build_light_tree(random_lights(500, 1));
+    const std::vector<WalkQuery> queries = random_queries(1 << 14, 2);
+    const std::vector<Walk> walks = walk(tree, queries);
+    std::size_t dark = 0;
+    std::size_t strays = 0;
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+        const Walk& w = walks[i];
+        ASSERT_TRUE(w.probability >= 0.0F && w.probability <= 1.0F) << w.probability;
+        if (w.probability <= 0.0F) {
+            ++dark;
+            continue;
+        }
+        ASSERT_EQ(w.probability, w.by_trail) << "a hit weighs the sample that would have made it by another number";
+        std::optional<glm::dvec3> normal;
+        if (!queries[i].any_side) normal = glm::dvec3(w.normal);
+        const double expected = reference_probability(tree.nodes, tree.trails[w.light], glm::dvec3(queries[i].position), normal);
+        // At the horizon a float's cosine keeps few digits.
+        strays += std::abs(static_cast<double>(w.probability) / expected - 1.0) < 1e-3 ? 0 : 1;
+    }
+    EXPECT_LE(strays, walks.size() / 500);
+    EXPECT_LT(dark, walks.size() / 2);
+}
+
+TEST(LightTreeWalk, CountsFollowTheProbabilities) {
+    const std::vector<LightBounds> lights = random_lights(120, 8);
+    const LightTree tree = build_light_tree(lights);
+    WalkQuery fixed{{1.0F, -2.0F, 3.0F}, glm::normalize(glm::vec3(0.2F, 1.0F, -0.4F)), false, 0.0F, 0.0F};
+    for (const bool any_side : {false, true}) {
+        fixed.any_side = any_side;
+        const std::vector<Walk> walks = walk(tree, random_queries(1 << 18, 9, &fixed));
+        std::optional<glm::dvec3> normal;
+        if (!any_side) normal = glm::dvec3(walks[0].normal);
+        std::vector<double> expected;
+        std::vector<double> counts(lights.size() + 1, 0.0);
+        double sum = 0.0;
+        for (const Uint32 trail : tree.trails) {
+            expected.push_back(reference_probability(tree.nodes, trail, glm::dvec3(fixed.position), normal));
+            sum += expected.back();
+        }
+        expected.push_back(std::max(1.0 - sum, 0.0));  // walks that end where no light shines
+        for (double& e : expected) e *= static_cast<double>(walks.size());
+        for (const Walk& w : walks) ++counts[w.probability > 0.0F ? w.light : lights.size()];
+        const ChiSquareResult result = chi_square_test(counts, expected);
+        EXPECT_GT(result.p_value, sidak_threshold(0.01, 10)) << result.statistic << " of " << result.degrees_of_freedom;
+        EXPECT_GT(result.degrees_of_freedom, 10);
+    }
+}
+
+// With a second number for the deep part, lights of a chance of 2^-25 still come up as often as they should.
+TEST(LightTreeWalk, ReachesRareLights) {
+    std::vector<LightBounds> lights(1 << 14);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        lights[i].lower = lights[i].upper = glm::dvec3(static_cast<double>(i % 128), static_cast<double>(i / 128), 0.0);
+        lights[i].spread = std::numbers::pi;
+        lights[i].emission = 0.5 * std::numbers::pi;
+        lights[i].intensity = 1.0;
+    }
+    const LightTree tree = build_light_tree(lights);
+    const WalkQuery fixed{{64.0F, 64.0F, 1e4F}, {0.0F, 0.0F, -1.0F}, true, 0.0F, 0.0F};
+    const std::vector<Walk> walks = walk(tree, random_queries(1 << 18, 10, &fixed));
+    std::vector<double> counts(lights.size(), 0.0);
+    for (const Walk& w : walks) ++counts[w.light];
+    const std::vector<double> expected(lights.size(), static_cast<double>(walks.size()) / static_cast<double>(lights.size()));
+    const ChiSquareResult result = chi_square_test(counts, expected);
+    EXPECT_GT(result.p_value, 1e-3) << result.statistic << " of " << result.degrees_of_freedom;
+}
+
+TEST(LightTreeWalk, ReceiversKeepTheirNormal) {
+    const LightTree tree = build_light_tree(random_lights(2, 1));
+    std::vector<WalkQuery> queries = random_queries(1 << 12, 11);
+    const glm::vec3 corners[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    for (std::size_t i = 0; i < 6; ++i) queries[i].normal = corners[i];
+    for (WalkQuery& q : queries) q.any_side = false;
+    const std::vector<Walk> walks = walk(tree, queries);
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+        ASSERT_LE(glm::length(walks[i].normal - queries[i].normal), 8e-5F) << i;
+    }
+}
+
+TEST(LightTreeWalk, SameBitsAtEveryWidth) {
+    const LightTree tree = build_light_tree(random_lights(700, 12));
+    const std::vector<WalkQuery> queries = random_queries(4096, 13);
+    const std::vector<Walk> wide = walk(tree, queries);
+    for (const int lanes : {1, 8}) {
+        EXPECT_EQ(std::memcmp(walk(tree, queries, lanes).data(), wide.data(), wide.size() * sizeof(Walk)), 0) << lanes;
+    }
+}
+
+}  // namespace
+}  // namespace wavelobe::test

@@ -1,0 +1,55 @@
+// Extensions of materials in tests of lobes: `extension` of a material is its record in lobe_extensions().
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "shared/materials.h"
+
+namespace wavelobe::test {
+
+template <class Extension>
+std::uint32_t append_extension(std::vector<::Material>& records, const Extension& extension) {
+    const std::size_t first = records.size();
+    records.resize(first + (sizeof(Extension) + sizeof(::Material) - 1) / sizeof(::Material));
+    std::memcpy(static_cast<void*>(&records[first]), &extension, sizeof(Extension));
+    return static_cast<std::uint32_t>(first);
+}
+
+// Transmittance that falls towards grazing incidence as Fresnel's does.
+inline RoughTransmittance falling_transmittance() {
+    RoughTransmittance table{};
+    for (Uint32 i = 0; i < ROUGH_TRANSMITTANCE_STEPS; ++i) {
+        const double cosine = static_cast<double>(i) / (ROUGH_TRANSMITTANCE_STEPS - 1);
+        table.at[i] = static_cast<float>(0.96 * (1.0 - std::pow(1.0 - cosine, 5.0)));
+    }
+    return table;
+}
+
+inline const std::vector<::Material>& lobe_extensions() {
+    static const std::vector<::Material> records = [] {
+        std::vector<::Material> list;
+        append_extension(list, falling_transmittance());
+        return list;
+    }();
+    return records;
+}
+
+template <class Extension>
+Extension extension_of(const ::Material& m) {
+    Extension extension;
+    std::memcpy(&extension, &lobe_extensions()[m.extension], sizeof(Extension));
+    return extension;
+}
+
+// Materials with the records of all extensions behind them.
+inline std::vector<::Material> with_extensions(std::vector<::Material> materials) {
+    const auto first = static_cast<std::uint32_t>(materials.size());
+    for (::Material& m : materials) m.extension += first;
+    materials.insert(materials.end(), lobe_extensions().begin(), lobe_extensions().end());
+    return materials;
+}
+
+}  // namespace wavelobe::test
