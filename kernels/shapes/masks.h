@@ -40,8 +40,9 @@ INLINE int passes_analytic(OpacityView o, global const struct Analytic *analytic
     UInt shape = gather_uint(o.primitive_shapes, (UInt)(o.triangle_count + index));
     Vec3 origin = vec3((Float)r->ox, (Float)r->oy, (Float)r->oz), direction = vec3((Float)r->dx, (Float)r->dy, (Float)r->dz);
     AnalyticHit h = analytic_hit(analytics, (UInt)index, origin, direction, (Float)t);
-    // The two hits of a shape are drawn apart.
-    UInt event = (UInt)(o.triangle_count + index) ^ mix_bits((UInt)as_uint(t));
+    // The two hits of a shape are drawn apart: one of them enters it, the other leaves.
+    UInt side = SELECT(dot3(h.normal, direction) < 0.0f, (UInt)0u, (UInt)0x80000000u);
+    UInt event = (UInt)(o.triangle_count + index) | side;
     return any_lane(passes((UInt)r->key, event, opacity_at(o, shape, h.u, h.v)));
 }
 

@@ -56,7 +56,8 @@ INLINE Int passes_veil(OpacityView o, Block block, SurfaceView view, Queue rays,
     path.hit = SELECT(veiled, path.hit, (UInt)0u);
     Surface surface = load_surface(view, &path);
     // A path may meet both sides of a sphere.
-    UInt event = surface.primitive ^ mix_bits(as_UInt(path.t));
+    Int entering = dot3(surface.normal, path.direction) < 0.0f;
+    UInt event = surface.primitive | SELECT(entering, (UInt)0u, (UInt)0x80000000u);
     Float opacity = opacity_at(o, surface.shape, surface.u, surface.v);
     return veiled & passes(ray_key(o, block, path.id, path.direction), event, opacity);
 }
