@@ -10,6 +10,10 @@
 namespace wavelobe {
 namespace {
 
+// From here on the light tree's smaller variance is worth its time: with two lights (veach-bidir) relMSE fell by 23 % and time
+// rose by 26 %, with five (glossy_plates) by 23 % and 20 %.
+constexpr std::size_t least_tree_lights = 5;
+
 Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
 // A light record with nothing set but its kind.
@@ -118,7 +122,7 @@ bool LightFlattener::has_place(const Emitter& emitter) {
 void LightFlattener::finish() {
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
-    if (bounds_.size() > 1) {
+    if (bounds_.size() >= least_tree_lights) {
         build_tree();
     } else {
         build_alias();

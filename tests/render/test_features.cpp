@@ -89,6 +89,8 @@ TEST(Features, UnusedMaterialsAndTexturesCostNothing) {
     EXPECT_EQ(render(burdened, 16).image.rgb, render(plain, 16).image.rgb);
 }
 
+constexpr const char* many_points = R"(<emitter type="point"/><emitter type="point"/><emitter type="point"/><emitter type="point"/>)";
+
 struct Addition {
     const char* name;
     const char* element;
@@ -116,7 +118,8 @@ TEST_P(Additions, BringWhatTheyNeed) {
 INSTANTIATE_TEST_SUITE_P(
     All, Additions,
     testing::Values(
-        Addition{"point", R"(<emitter type="point"/>)", {"light:point", "light_choice", "light_tree"}},
+        Addition{"many_points", many_points, {"light:point", "light_choice", "light_tree"}},
+        Addition{"point", R"(<emitter type="point"/>)", {"light:point", "light_choice"}},
         Addition{"constant", R"(<emitter type="constant"/>)", {"light:constant", "light_choice"}},
         Addition{"black_environment", R"(<emitter type="constant"><rgb name="radiance" value="0"/></emitter>)", {}},
         Addition{"diffuse_sphere", R"(<bsdf type="diffuse"/>)", {"analytic_shapes"}},

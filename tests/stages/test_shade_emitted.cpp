@@ -56,8 +56,14 @@ TEST_P(ShadeEmitted, ShowsTheSideOfTheNormal) {
     }
 }
 
-TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
-    StageBench bench(two_lights(), GetParam());
+// More lights far off, so that a tree chooses.
+Scene many_lights() {
+    Scene scene = two_lights();
+    for (int i = 0; i < 3; ++i) scene.emitters.emplace_back(PointEmitter{{0, 50, 10.0F * static_cast<float>(i)}, {1, 1, 1}});
+    return scene;
+}
+
+void expect_weighted_against_light_sample(StageBench& bench) {
     const glm::vec3 direction{0.5F, 0.25F, -1};
     const double cosine = 1.0 / glm::length(glm::dvec3(direction));
     const double areas[] = {6.0, 6.0, 0.5, 2.0};
@@ -71,8 +77,11 @@ TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
             // Its place is that of barycentric coordinates of a quarter each.
             const std::span<const glm::vec3, 3> t = bench.scene().triangles[triangle];
             const glm::dvec3 hit = 0.5 * glm::dvec3(t[0]) + 0.25 * glm::dvec3(t[1]) + 0.25 * glm::dvec3(t[2]);
-            const double choice = reference_probability(bench.scene().light_tree, bench.scene().lights[lights[triangle]].trail,
-                                                        hit - 4.0 * glm::normalize(glm::dvec3(direction)), std::nullopt);
+            const struct Light& chosen = bench.scene().lights[lights[triangle]];
+            const double choice = bench.scene().light_tree.empty()
+                                      ? static_cast<double>(chosen.selection_probability)
+                                      : reference_probability(bench.scene().light_tree, chosen.trail,
+                                                              hit - 4.0 * glm::normalize(glm::dvec3(direction)), std::nullopt);
             ASSERT_GT(choice, 0.0);
             const double light = choice * 16.0 / (cosine * areas[triangle]);
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);
@@ -81,6 +90,18 @@ TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
                          glm::dvec3(p.throughput) * glm::dvec3(radiance) * p2 / (p2 + light * light));
         }
     }
+}
+
+TEST_P(ShadeEmitted, WeighsAgainstTheLightSample) {
+    StageBench bench(two_lights(), GetParam());
+    ASSERT_TRUE(bench.scene().light_tree.empty());
+    expect_weighted_against_light_sample(bench);
+}
+
+TEST_P(ShadeEmitted, WeighsAgainstTheLightSampleOfATree) {
+    StageBench bench(many_lights(), GetParam());
+    ASSERT_FALSE(bench.scene().light_tree.empty());
+    expect_weighted_against_light_sample(bench);
 }
 
 WAVELOBE_AT_EACH_WIDTH(ShadeEmitted);

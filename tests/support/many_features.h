@@ -55,7 +55,10 @@ inline Scene many_features_scene(int width, int height) {
     make_emitter(add_sphere(scene, {-1.8F, 2.2F, 0.5F}, 0.15F, black), {20, 10, 5});
     scene.shapes.back().material.opacity.value.value = Rgb{0.5F};
     scene.emitters.emplace_back(ConstantEmitter{{0.1F, 0.15F, 0.2F}});
+    // With these as many lights as are chosen by a tree.
     scene.emitters.emplace_back(PointEmitter{{0, 2.2F, 2.5F}, {1, 1, 1}});
+    scene.emitters.emplace_back(PointEmitter{{1.5F, 2.0F, 1.0F}, {0.3F, 0.2F, 0.1F}});
+    scene.emitters.emplace_back(PointEmitter{{-1.5F, 1.0F, 2.0F}, {0.1F, 0.2F, 0.3F}});
     scene.emitters.emplace_back(DirectionalEmitter{glm::normalize(glm::vec3{0.4F, -1, -0.3F}), {0.5F, 0.5F, 0.4F}});
     return scene;
 }
