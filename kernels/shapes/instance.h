@@ -1,8 +1,8 @@
 // Instances: groups of shapes that stand in several places. Rays go to the group's space, surfaces come back from it.
 //
 // The ray is moved to the instance's origin first, so that the rounding of the map is relative to the distance from there
-// and not to the world's coordinates. Its direction is made unit again. What both maps may round is part of the surface's error bound, and a ray that leaves a surface stays on its
-// side in the group's space too. (Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing Rounding Error".)
+// and not to the world's coordinates. Its direction is made unit again. What both maps may round is part of the surface's
+// error bound, and a ray that leaves a surface stays on its side in the group's space too. (Pharr, Jakob, Humphreys, "Physically Based Rendering", "Managing Rounding Error".)
 #ifndef WAVELOBE_SHAPES_INSTANCE_H
 #define WAVELOBE_SHAPES_INSTANCE_H
 
