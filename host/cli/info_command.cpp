@@ -27,6 +27,8 @@ const char* filter_name(ReconstructionFilter::Kind kind) {
         case ReconstructionFilter::Kind::box: return "box";
         case ReconstructionFilter::Kind::tent: return "tent";
         case ReconstructionFilter::Kind::gaussian: return "gaussian";
+        case ReconstructionFilter::Kind::mitchell: return "mitchell";
+        case ReconstructionFilter::Kind::lanczos: return "lanczos";
     }
     return "";
 }

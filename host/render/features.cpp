@@ -85,6 +85,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_SIGNED_FILTER", f.signed_filter);
     out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
     out.define("HAS_MASKS", f.masks);
@@ -189,6 +190,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(signed_filter, "signed_filter");
     add(error_estimate, "error_estimate");
     add(masks, "masks");
     add(veiled_emitters, "veiled_emitters");

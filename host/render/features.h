@@ -43,6 +43,7 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool signed_filter = false;  // samples have weights, negative ones among them
     bool error_estimate = false; // the film is kept in two independent halves
     bool masks = false;            // rays pass some primitives, by their opacity
     bool veiled_emitters = false;  // paths go on behind some emitters

@@ -87,6 +87,7 @@ private:
     void finish_features() {
         FeatureSet& f = out_.features;
         f.textures = !out_.textures.empty();
+        f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
         f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy);

@@ -243,9 +243,14 @@ using Emitter =
 // ---- sensor, film, integrator -----------------------------------------------------------------------
 
 struct ReconstructionFilter {
-    enum class Kind : std::uint8_t { box, tent, gaussian } kind = Kind::gaussian;
-    float radius = 2.0F;  // half width in pixels (box 0.5, tent 1, gaussian 4 stddev)
+    enum class Kind : std::uint8_t { box, tent, gaussian, mitchell, lanczos } kind = Kind::gaussian;
+    float radius = 2.0F;  // half width in pixels (box 0.5, tent 1, gaussian 4 stddev, mitchell 2, lanczos its lobes)
     float stddev = 0.5F;  // gaussian only
+    float b = 1.0F / 3.0F;  // mitchell only: the parameters of the family; Catmull-Rom's spline has 0 and 1/2
+    float c = 1.0F / 3.0F;
+
+    // Some samples count negatively.
+    bool is_signed() const { return kind == Kind::mitchell || kind == Kind::lanczos; }
 };
 
 struct Film {

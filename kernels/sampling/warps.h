@@ -58,19 +58,31 @@ INLINE Vec2 square_to_triangle(Float u1, Float u2) {
     return b;
 }
 
+// The cell of the filter's table that holds the share `tail`.
+INLINE Int filter_cell(Float tail) {
+    Int cell = convert_Int(sqrt(tail) * (float)FILTER_TABLE_CELLS);
+    return SELECT(cell < (Int)FILTER_TABLE_CELLS, cell, (Int)(FILTER_TABLE_CELLS - 1u));
+}
+
 // An offset from the pixel centre, in pixels, with the density of the reconstruction filter along one axis, by inversion
 // of its tails (host/tables/filter_table.h). Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling".
 INLINE Float sample_filter(global const float *table, Float u) {
     Float v = madd(u, (Float)2.0f, (Float)-1.0f);
     Float tail = ONE - fabs(v); // share of the filter beyond the offset
-    Int cell = convert_Int(sqrt(tail) * (float)FILTER_TABLE_CELLS);
-    cell = SELECT(cell < (Int)FILTER_TABLE_CELLS, cell, (Int)(FILTER_TABLE_CELLS - 1u));
+    Int cell = filter_cell(tail);
     Float i = convert_Float(cell);
     Float far = gather(table, as_UInt(cell));
     Float near = gather(table + 1, as_UInt(cell));
     // The cell holds the shares from i^2 to (i + 1)^2, in units of 1 / FILTER_TABLE_CELLS^2.
     Float position = madd(tail, (Float)((float)FILTER_TABLE_CELLS * (float)FILTER_TABLE_CELLS), -i * i) / madd(i, (Float)2.0f, ONE);
     return copy_sign(madd(position, near - far, far), v);
+}
+
+// What the sample that `u` places along one axis counts, for filters that are negative somewhere: their absolute value is
+// drawn from. The mean over u is one.
+INLINE Float filter_weight(global const float *table, Float u) {
+    Float tail = ONE - fabs(madd(u, (Float)2.0f, (Float)-1.0f));
+    return gather(table + FILTER_TABLE_WEIGHTS, as_UInt(filter_cell(tail)));
 }
 
 #endif

@@ -5,17 +5,39 @@
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #include "stages/scene_view.h"
+#if HAS_SIGNED_FILTER
+#include "sampling/warps.h"
+#include "stages/dimensions.h"
+#endif
 #if HAS_ERROR_ESTIMATE
 #include "stages/tile_error.h"
 #endif
 
 INLINE uint is_finite(float x) { return (as_uint(x) & 0x7f800000u) != 0x7f800000u; }
 
+#if HAS_SIGNED_FILTER
+// Each sample by what its place under the filter counts.
+INLINE void weigh_samples(Block block, const SceneView *scene) {
+    for (uint first = 0u; first < block.header->path_count; first += LANES) {
+        Float u1, u2;
+        sample_2d(path_sample_id(block, LANE_INDEX + (UInt)first, scene->parameters->seed), (UInt)PAIR_FILM, &u1, &u2);
+        Float weight = filter_weight(scene->filter_table, u1) * filter_weight(scene->filter_table, u2);
+        for (uint c = 0u; c < 3u; c++) {
+            global float *channel = radiance_channel(block, c) + first;
+            store(channel, load(channel) * weight);
+        }
+    }
+}
+#endif
+
 INLINE uint run_accumulate(Block block, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
     global struct BlockHeader *h = block.header;
     uint pending = h->count[QUEUE_RAYS] + h->count[QUEUE_SHADOW];
     if (h->path_count == 0u || h->next_path < h->path_count || pending != 0u) return 0u;
+#if HAS_SIGNED_FILTER
+    weigh_samples(block, scene);
+#endif
     global float *red = radiance_channel(block, 0u), *green = radiance_channel(block, 1u);
     global float *blue = radiance_channel(block, 2u);
     global struct FilmPixel *film = scene->film;

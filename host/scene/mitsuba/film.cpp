@@ -9,24 +9,48 @@ namespace {
 
 using Kind = ReconstructionFilter::Kind;
 
-ReconstructionFilter read_box(Query&) { return {Kind::box, 0.5F, 0.5F}; }
+// Pixels: a filter beyond this sees no picture any more.
+constexpr double max_radius = 1000.0;
+
+float radius(Query& query, double otherwise) {
+    return static_cast<float>(query.real("radius", otherwise, Range{1e-3, max_radius}));
+}
+
+// Mitsuba 0.x let boxes have a radius.
+ReconstructionFilter read_box(Query& query) {
+    return {.kind = Kind::box, .radius = query.object().legacy ? radius(query, 0.5) : 0.5F};
+}
 
 ReconstructionFilter read_tent(Query& query) {
-    return {Kind::tent, static_cast<float>(query.real("radius", 1.0, positive)), 0.5F};
+    return {.kind = Kind::tent, .radius = radius(query, 1.0)};
 }
 
 ReconstructionFilter read_gaussian(Query& query) {
-    const auto stddev = static_cast<float>(query.real("stddev", 0.5, positive));
-    return {Kind::gaussian, 4.0F * stddev, stddev};
+    const auto stddev = static_cast<float>(query.real("stddev", 0.5, Range{1e-3, 0.25 * max_radius}));
+    return {.kind = Kind::gaussian, .radius = 4.0F * stddev, .stddev = stddev};
+}
+
+ReconstructionFilter read_mitchell(Query& query) {
+    const auto parameter = [&](const char* name) { return static_cast<float>(query.real(name, 1.0 / 3.0, Range{-10.0, 10.0})); };
+    return {.kind = Kind::mitchell, .b = parameter("B"), .c = parameter("C")};
+}
+
+ReconstructionFilter read_catmullrom(Query&) { return {.kind = Kind::mitchell, .b = 0.0F, .c = 0.5F}; }
+
+ReconstructionFilter read_lanczos(Query& query) {
+    return {.kind = Kind::lanczos, .radius = static_cast<float>(query.integer("lobes", 3, 1, 32))};
 }
 
 struct FilterPlugin {
     const char* name;
     ReconstructionFilter (*read)(Query&);
 };
-constexpr std::array<FilterPlugin, 3> filter_plugins{{
+constexpr std::array<FilterPlugin, 6> filter_plugins{{
     {"box", read_box},
+    {"catmullrom", read_catmullrom},
     {"gaussian", read_gaussian},
+    {"lanczos", read_lanczos},
+    {"mitchell", read_mitchell},
     {"tent", read_tent},
 }};
 
@@ -48,7 +72,7 @@ void accept_output_formats(Query& query) {
     query.choice("pixel_format", {"luminance", "luminance_alpha", "rgb", "rgba", "xyz", "xyza"}, 2);
     query.choice("component_format", {"float16", "float32", "uint32"}, 0);
     query.boolean("sample_border", false);
-    query.accept({"banner", "compensate"});
+    query.accept({"banner", "compensate", "high_quality_edges"});
 }
 
 Film read_hdr_film(Query& query) {

@@ -16,15 +16,18 @@ struct SamplerPlugin {
     const char* name;
     std::vector<std::string> (*accepted)();
 };
-const std::array<SamplerPlugin, 5> sampler_plugins{{
+const std::array<SamplerPlugin, 8> sampler_plugins{{
+    {"halton", [] { return std::vector<std::string>{"scramble"}; }},
+    {"hammersley", [] { return std::vector<std::string>{"scramble"}; }},
     {"independent", [] { return std::vector<std::string>{}; }},
-    {"ldsampler", [] { return std::vector<std::string>{}; }},
+    {"ldsampler", [] { return std::vector<std::string>{"dimension"}; }},
     {"multijitter", [] { return std::vector<std::string>{"jitter"}; }},
     {"orthogonal",
      [] {
          return std::vector<std::string>{"jitter", "strength"};
      }},
-    {"stratified", [] { return std::vector<std::string>{"jitter"}; }},
+    {"sobol", [] { return std::vector<std::string>{"scramble"}; }},
+    {"stratified", [] { return std::vector<std::string>{"dimension", "jitter"}; }},
 }};
 
 struct Sampling {

@@ -25,7 +25,7 @@ struct Renamed {
 };
 
 constexpr const char* same_light = "replaced by `path`, which computes the same light";
-constexpr std::array<Renamed, 26> renamed_plugins{{
+constexpr std::array<Renamed, 23> renamed_plugins{{
     {"film", "ldrfilm", "hdrfilm", "replaced by `hdrfilm`: pictures are linear, without tone mapping"},
     {"film", "mfilm", "hdrfilm", "replaced by `hdrfilm`"},
     {"film", "tiledhdrfilm", "hdrfilm", "replaced by `hdrfilm`"},
@@ -40,9 +40,6 @@ constexpr std::array<Renamed, 26> renamed_plugins{{
     {"integrator", "sppm", "path", same_light},
     {"integrator", "vpl", "path", same_light},
     {"integrator", "volpath_simple", "volpath", ""},
-    {"sampler", "halton", "independent", ""},
-    {"sampler", "hammersley", "independent", ""},
-    {"sampler", "sobol", "independent", ""},
     {"bsdf", "bump", "bumpmap", ""},
     {"bsdf", "mixturebsdf", "blendbsdf", ""},
     {"bsdf", "mixture", "blendbsdf", ""},
