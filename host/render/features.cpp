@@ -79,6 +79,13 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
+    out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps);
+    out.define("HAS_NORMAL_MAPS", f.normal_maps);
+    out.define("HAS_BUMP_MAPS", f.bump_maps);
+    out.define("HAS_NESTED_SIDES", f.nested_sides);
+    out.define("HAS_BLENDS", f.blends);
+    out.define("HAS_NESTING", f.material_levels > 0);
+    out.define_unsigned("MATERIAL_LEVELS", f.material_levels);
     out.define("HAS_TRANSMISSION", f.transmission);
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);
@@ -183,6 +190,10 @@ std::vector<std::string> FeatureSet::names() const {
     add(analytic, "analytic_shapes");
     add(instances, "instances");
     add(anisotropy, "anisotropy");
+    add(normal_maps, "normal_maps");
+    add(bump_maps, "bump_maps");
+    add(nested_sides, "nested_sides");
+    add(blends, "blends");
     add(transmission, "transmission");
     add(unlike_sides, "unlike_sides");
     add(lobe_choice, "lobe_choice");

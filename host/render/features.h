@@ -36,6 +36,11 @@ struct FeatureSet {
     bool analytic = false;
     bool instances = false;
     bool anisotropy = false;
+    bool normal_maps = false;   // or bump maps
+    bool bump_maps = false;
+    bool nested_sides = false;  // materials inside others differ between sides or are turned over
+    bool blends = false;
+    int material_levels = 0;    // of materials that hold others, at the most
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material
     bool lobe_choice = false;  // the class of lobes depends on more than the shape

@@ -90,7 +90,7 @@ private:
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
-        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy);
+        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
         out_.uvs = {};

@@ -14,6 +14,7 @@ namespace wavelobe {
 
 // Device structs share names with the neutral ones; here they carry a prefix.
 using DeviceMaterial = ::Material;
+using DeviceNesting = ::Nesting;
 using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
 using DeviceOpacity = ::Opacity;

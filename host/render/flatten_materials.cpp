@@ -18,6 +18,15 @@ double mean_component(const Parameter& p) {
     return mean_luminance(p);
 }
 
+// Their record is another.
+template <class Model>
+constexpr bool holds_others = std::is_same_v<Model, NormalMapped> || std::is_same_v<Model, BumpMapped> ||
+                              std::is_same_v<Model, TwoSided> || std::is_same_v<Model, Blend>;
+
+std::uint32_t perturbation_flags(const NormalPerturbation& p) {
+    return (p.flip_invalid ? MATERIAL_FLIPS_NORMALS : 0U) | (p.soften_terminator ? MATERIAL_SHADES_TERMINATOR : 0U);
+}
+
 // How the lobes of plastic share the samples, before Fresnel.
 template <class Model>
 float specular_share(const Model& m) {
@@ -179,6 +188,45 @@ void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
     out.specular_weight = m.specular;
 }
 
+void MaterialFlattener::nest(DeviceNesting& out, std::uint32_t kind, const NestedMaterial& first, const NestedMaterial& second) {
+    out.flags = kind;
+    out.inner[0] = add(first.get());
+    out.inner[1] = add(second.get());
+    int levels = 0;
+    for (const std::uint32_t inner : out.inner) {
+        out.lobes |= lobes(inner);
+        const auto known = levels_.find(inner);
+        if (known != levels_.end()) levels = std::max(levels, known->second);
+    }
+    levels_[static_cast<std::uint32_t>(out_.materials.size())] = levels + 1;
+    out_.features.material_levels = std::max(out_.features.material_levels, levels + 1);
+}
+
+void MaterialFlattener::fill(DeviceNesting& out, const NormalMapped& m) {
+    nest(out, MATERIAL_NORMAL_MAP | perturbation_flags(m.perturbation), m.nested, nullptr);
+    out_.features.normal_maps = true;
+    out.normal = rgb(m.normals);
+    out.scale = m.scale;
+}
+
+void MaterialFlattener::fill(DeviceNesting& out, const BumpMapped& m) {
+    nest(out, MATERIAL_BUMP_MAP | perturbation_flags(m.perturbation), m.nested, nullptr);
+    out_.features.normal_maps = out_.features.bump_maps = true;
+    out.height = texture(m.height, 0);
+    out.scale = m.scale;
+}
+
+void MaterialFlattener::fill(DeviceNesting& out, const TwoSided& m) {
+    nest(out, MATERIAL_SIDES, m.front, m.back);
+    out_.features.nested_sides = true;
+}
+
+void MaterialFlattener::fill(DeviceNesting& out, const Blend& m) {
+    nest(out, MATERIAL_BLEND, m.first, m.second);
+    out_.features.blends = true;
+    out.weight = scalar(m.weight);
+}
+
 template <class Extension>
 std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
     const std::size_t first = out_.materials.size();
@@ -188,13 +236,27 @@ std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
 }
 
 std::uint32_t MaterialFlattener::add(int material) {
-    if (material < 0) return WAVELOBE_NONE;
+    return add(material < 0 ? nullptr : &scene_.materials[static_cast<std::size_t>(material)]);
+}
+
+std::uint32_t MaterialFlattener::add(const Material* material) {
+    if (material == nullptr) return WAVELOBE_NONE;
     if (const auto known = materials_.find(material); known != materials_.end()) return known->second;
     DeviceMaterial m{};
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
     for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent, &m.metallic}) parameter->texture = WAVELOBE_NONE;
-    std::visit([this, &m](const auto& model) { fill(m, model); },
-               scene_.materials[static_cast<std::size_t>(material)].model);
+    std::visit(
+        [this, &m](const auto& model) {
+            if constexpr (holds_others<std::decay_t<decltype(model)>>) {
+                DeviceNesting nesting{};
+                nesting.normal.texture = nesting.weight.texture = nesting.height = WAVELOBE_NONE;
+                fill(nesting, model);
+                std::memcpy(static_cast<void*>(&m), &nesting, sizeof(nesting));
+            } else {
+                fill(m, model);
+            }
+        },
+        material->model);
 
     FeatureSet& f = out_.features;
     f.lobes |= m.lobes;
@@ -204,7 +266,7 @@ std::uint32_t MaterialFlattener::add(int material) {
         if (((m.lobes >> i) & 1U) != 0) classes |= 1U << lobe_class(i);
     }
     constexpr std::uint32_t smooth = (1U << LOBE_CLASS_GLOSSY) | (1U << LOBE_CLASS_DIFFUSE);
-    f.mixture = f.mixture || (classes & smooth) == smooth;
+    f.mixture = f.mixture || ((m.flags & MATERIAL_NESTS) == 0 && (classes & smooth) == smooth);
     f.lobe_choice = f.lobe_choice || (classes & (classes - 1U)) != 0;
     const auto index = static_cast<std::uint32_t>(out_.materials.size());
     out_.materials.push_back(m);

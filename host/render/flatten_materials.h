@@ -15,6 +15,7 @@ public:
 
     // Index of the device material, or WAVELOBE_NONE for index -1.
     std::uint32_t add(int material);
+    std::uint32_t add(const Material* material);
     std::uint32_t lobes(std::uint32_t device_material) const;
 
     TexturedRgb rgb(const Parameter& parameter);
@@ -34,6 +35,12 @@ private:
     void fill(DeviceMaterial& out, const RoughPlastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
     void fill(DeviceMaterial& out, const MetallicRoughness& m);
+    // Materials that hold others.
+    void fill(DeviceNesting& out, const NormalMapped& m);
+    void fill(DeviceNesting& out, const BumpMapped& m);
+    void fill(DeviceNesting& out, const TwoSided& m);
+    void fill(DeviceNesting& out, const Blend& m);
+    void nest(DeviceNesting& out, std::uint32_t kind, const NestedMaterial& first, const NestedMaterial& second);
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);
@@ -45,7 +52,8 @@ private:
 
     const Scene& scene_;
     DeviceScene& out_;
-    std::map<int, std::uint32_t> materials_;
+    std::map<const Material*, std::uint32_t> materials_;
+    std::map<std::uint32_t, int> levels_;  // of materials that hold others
     std::map<std::pair<const Texture*, int>, std::uint32_t> textures_;
     std::map<const Texture*, std::uint32_t> texels_;
 };

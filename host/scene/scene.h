@@ -134,8 +134,46 @@ struct MetallicRoughness {
     Rgb specular_color{1.0F};     // ... at normal incidence
 };
 
+struct Material;
+using NestedMaterial = std::shared_ptr<const Material>;  // null: black
+
+// How the materials below change normals. `flip_invalid`: a normal that faces away from the viewer has its tangential part
+// mirrored. `soften_terminator`: light that grazes the surface is weakened, where the new normal would see an edge.
+struct NormalPerturbation {
+    bool flip_invalid = true;
+    bool soften_terminator = true;
+};
+
+// Normals in the frame of the tangent along u, as (n + 1) / 2. x and y are scaled.
+struct NormalMapped {
+    Parameter normals{Rgb{0.5F, 0.5F, 1.0F}, nullptr};
+    float scale = 1.0F;
+    NormalPerturbation perturbation{};
+    NestedMaterial nested;
+};
+
+// The surface is raised along its normal by scale * height, in scene units; its smooth texture alone has slopes.
+struct BumpMapped {
+    std::shared_ptr<const Texture> height;
+    float scale = 1.0F;
+    NormalPerturbation perturbation{};
+    NestedMaterial nested;
+};
+
+// Another material on each side, inside a material that holds others; seen from behind the frame is turned.
+struct TwoSided {
+    NestedMaterial front, back;
+};
+
+// (1 - weight) * first + weight * second, the weight clamped to [0, 1].
+struct Blend {
+    Parameter weight{Rgb{0.5F}, nullptr};
+    NestedMaterial first, second;
+};
+
 using MaterialModel = std::variant<Diffuse, Conductor, RoughConductor, Dielectric, ThinDielectric,
-                                   RoughDielectric, Plastic, RoughPlastic, Phong, MetallicRoughness>;
+                                   RoughDielectric, Plastic, RoughPlastic, Phong, MetallicRoughness,
+                                   NormalMapped, BumpMapped, TwoSided, Blend>;
 
 struct Material {
     MaterialModel model;
@@ -151,8 +189,8 @@ struct Opacity {
     std::optional<float> cutoff;
 };
 
-// What a surface shows on each side. Transmissive materials have the same index on both sides;
-// a one-sided opaque material has no back (black there); `twosided` has both.
+// What a surface shows on each side. Transmissive materials and those that hold others have the same index on both sides: their
+// frame is not turned when it is seen from behind. A one-sided opaque material has no back (black there); `twosided` has both.
 struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black

@@ -136,6 +136,24 @@ INLINE Float texture_float(TextureBuffers b, UInt i, Float u, Float v) {
     return value;
 }
 
+// Change of a scalar with (u, v): that of the filter between texel centres. None without a filter, nor on checkerboards.
+INLINE void texture_gradient(TextureBuffers b, UInt i, Float u, Float v, Float *along_u, Float *along_v) {
+    UInt kind = as_UInt(texture_field(b, i, kind));
+    TexelQuad q = texel_quad(b, i, kind, texture_coordinates(b, i, u, v));
+    Int smooth = ((kind & (UInt)TEXTURE_BITMAP) != (UInt)0u) & q.filtered;
+    Float t00 = gather(b.texels, q.offset[0]), t10 = gather(b.texels, q.offset[1]);
+    Float t01 = gather(b.texels, q.offset[2]), t11 = gather(b.texels, q.offset[3]);
+    Float width = convert_Float(as_Int(texture_field(b, i, width)));
+    Float height = convert_Float(as_Int(texture_field(b, i, height)));
+    Float across = SELECT(smooth, madd(1.0f - q.v, t10 - t00, q.v * (t11 - t01)), ZERO); // a texel
+    Float down = SELECT(smooth, madd(1.0f - q.u, t01 - t00, q.u * (t11 - t10)), ZERO);
+#define TO_UV(row, column) texture_word(b, i, WORD_OFFSET(Texture, to_uv) + (row) * 3u + (column))
+    // Width and height after the transform, as in Mitsuba 3: it matters where that turns a texture that is not square.
+    *along_u = width * madd(TO_UV(0u, 0u), across, TO_UV(1u, 0u) * down);
+    *along_v = height * madd(TO_UV(0u, 1u), across, TO_UV(1u, 1u) * down);
+#undef TO_UV
+}
+
 INLINE Rgb looked_up_rgb(MaterialInput in, UInt texture, Int textured) {
     TextureBuffers b = {in.textures, in.texels};
     // Lanes without a texture look up the first.

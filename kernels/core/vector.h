@@ -44,6 +44,13 @@ INLINE Vec3 cross3(Vec3 a, Vec3 b) {
 
 INLINE Vec3 normalize3(Vec3 a) { return scale(a, 1.0f / sqrt(length_squared(a))); }
 
+// Unit vector, also of vectors so short that their squares underflow.
+INLINE Vec3 normalize_any_scale(Vec3 a) {
+    Vec3 m = absolute(a);
+    Float most = max_component(m);
+    return normalize3(scale(a, 1.0f / most));
+}
+
 INLINE Float luminance(Rgb c) { return madd(c.x, (Float)0.212671f, madd(c.y, (Float)0.715160f, c.z * 0.072169f)); }
 
 // s, t, n orthonormal and right-handed.
@@ -70,7 +77,7 @@ INLINE Frame frame_along(Vec3 n, Vec3 along) {
     Frame fallback = frame_of_normal(n);
     Frame f;
     f.n = n;
-    f.s = select3(square > 0.0f, scale(s, 1.0f / sqrt(square)), fallback.s);
+    f.s = select3((square > 0.0f) & (square < INFINITY), scale(s, 1.0f / sqrt(square)), fallback.s);
     f.t = cross3(n, f.s);
     return f;
 }

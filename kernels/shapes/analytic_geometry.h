@@ -82,7 +82,7 @@ INLINE float intersect_analytic(global const struct Analytic *s, const Ray *r, f
 typedef struct {
     Vec3 position, error; // world space; bound on the distance to the surface along each axis
     Vec3 normal;          // unit, after the flip
-    Vec3 tangent;         // unit, along increasing u, perpendicular to the normal
+    Vec3 dp_du, dp_dv;    // change of position with u and v; zero where they have no direction
     Float u, v;
 } AnalyticHit;
 
@@ -125,11 +125,14 @@ INLINE AnalyticHit analytic_hit(global const struct Analytic *analytics, UInt in
     hit.error = scale_add(absolute(outward), across, scale(absolute(hit.position), (Float)GAMMA(2)));
 
     analytic_uv(m.kind, object, &hit.u, &hit.v);
-    Vec3 along_u = map_to_world(m, vec3(SELECT(disk, object.x, -object.y), SELECT(disk, object.y, object.x), ZERO));
-    along_u = scale_add(hit.normal, -dot3(hit.normal, along_u), along_u);
-    Float length2 = length_squared(along_u);
-    // At a pole or the centre of a disk u has no direction.
-    hit.tangent = select3(length2 > 0.0f, scale(along_u, 1.0f / sqrt(length2)), frame_of_normal(hit.normal).s);
+    // Azimuth runs from 0 to 1 about the axis, the polar angle from pole to pole.
+    Int on_axis = radial == 0.0f;
+    Float inverse = SELECT(on_axis, ZERO, 1.0f / radial);
+    Vec3 about = scale(vec3(-object.y, object.x, ZERO), (Float)TWO_PI_F);
+    Vec3 outwards = vec3(object.x * inverse, object.y * inverse, ZERO);
+    Vec3 down = scale(vec3(object.z * SELECT(on_axis, ONE, outwards.x), object.z * outwards.y, -radial), (Float)PI_F);
+    hit.dp_du = map_to_world(m, select3(disk, outwards, about));
+    hit.dp_dv = map_to_world(m, select3(disk, about, select3(sphere, down, vec3(ZERO, ZERO, ONE))));
     return hit;
 }
 

@@ -8,6 +8,9 @@
 #include "shared/scene.h"
 #include "shared/materials.h"
 #include "shapes/triangle_uvs.h"
+#if HAS_TANGENTS
+#include "shapes/triangle_tangents.h"
+#endif
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
@@ -107,6 +110,15 @@ typedef struct {
     Int live; // lanes that hold a path
 } TracedPath;
 
+#if HAS_NORMAL_MAPS
+// A normal or bump map at one level of a nested material: the normal before and after it, turned to the side that is seen.
+typedef struct {
+    Vec3 outer, inner;
+    Float alpha2; // of the shadowing of its terminator; 0: none
+    Int mapped;
+} MappedNormal;
+#endif
+
 typedef struct {
     Vec3 position;
     Vec3 error;    // absolute bound on its rounding error
@@ -114,12 +126,18 @@ typedef struct {
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
     Float u, v;    // texture coordinates
+#if HAS_TANGENTS
+    Vec3 dp_du, dp_dv; // change of position with them
+#endif
 #if HAS_VERTEX_COLORS
     Rgb color;
 #endif
     UInt shape;
     UInt primitive;
     UInt material; // WAVELOBE_NONE: black
+#if HAS_NORMAL_MAPS
+    MappedNormal maps[MATERIAL_LEVELS]; // that the material's frame has gone through
+#endif
 } Surface;
 
 // Slots of a group beyond the queue's end are read as hits of triangle 0 with no weight.
@@ -148,13 +166,6 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
     p.receiver = read_uint(q, PATH_RECEIVER, i);
 #endif
     return p;
-}
-
-// Unit vector, also of vectors so short that their squares underflow.
-INLINE Vec3 normalize_any_scale(Vec3 a) {
-    Vec3 m = absolute(a);
-    Float most = max_component(m);
-    return normalize3(scale(a, 1.0f / most));
 }
 
 INLINE UInt block_word(UInt slot) { return (slot >> 3) * RECORD_WORDS(TriangleBlock) + (slot & (UInt)7u); }
@@ -189,20 +200,6 @@ INLINE Vec3 interpolate(Vec3 a, Vec3 b, Vec3 c, Float wa, Float wb, Float wc) {
 
 INLINE Vec3 gather_vec3(global const float *p, UInt i) { return vec3(gather(p, i), gather(p + 1, i), gather(p + 2, i)); }
 
-#if HAS_UVS
-// The tangent along u of a triangle with texture coordinates.
-INLINE Vec3 triangle_tangent(SurfaceView s, UInt first_uv, UInt triangle, Vec3 e1, Vec3 e2, Vec3 fallback) {
-    Int textured = first_uv != (UInt)WAVELOBE_NONE;
-    UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Float u0 = gather(s.uvs, at), v0 = gather(s.uvs + 1, at);
-    Float du1 = gather(s.uvs + 2, at) - u0, dv1 = gather(s.uvs + 3, at) - v0;
-    Float du2 = gather(s.uvs + 4, at) - u0, dv2 = gather(s.uvs + 5, at) - v0;
-    Float det = difference_of_products(du1, dv2, dv1, du2);
-    Vec3 tangent = scale(sub(scale(e1, dv2), scale(e2, dv1)), 1.0f / det);
-    return select3(textured & (det != 0.0f), tangent, fallback);
-}
-#endif
-
 INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
     UInt word = block_word(slot);
     Vec3 a = block_vertex(s, word, 0u), b = block_vertex(s, word, 1u), c = block_vertex(s, word, 2u);
@@ -211,7 +208,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     out->error = scale(interpolate(absolute(a), absolute(b), absolute(c), fabs(wa), fabs(wb), fabs(wc)), (Float)GAMMA(7));
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
-    Vec3 n = out->normal;
+    out->frame.n = out->normal;
 #if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
     UInt triangle = out->primitive - first_primitive;
 #endif
@@ -223,7 +220,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
         Vec3 shading = interpolate(gather_vec3(s.normals, at), gather_vec3(s.normals + 3, at),
                                    gather_vec3(s.normals + 6, at), wa, wb, wc);
         Float square = length_squared(shading);
-        n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), n);
+        out->frame.n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), out->normal);
     }
 #endif
 #if HAS_VERTEX_COLORS
@@ -243,10 +240,12 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_uv);
     triangle_uvs(s.uvs, first_uv, triangle, wa, wb, wc, &out->u, &out->v);
 #endif
-#if HAS_ANISOTROPY && HAS_UVS
-    out->frame = frame_along(n, triangle_tangent(s, first_uv, triangle, e1, e2, frame_of_normal(n).s));
-#else
-    out->frame = frame_of_normal(n);
+#if HAS_TANGENTS
+    out->dp_du = e1;
+    out->dp_dv = e2;
+#if HAS_UVS
+    triangle_tangents(s.uvs, first_uv, triangle, out->normal, &out->dp_du, &out->dp_dv);
+#endif
 #endif
 }
 
@@ -268,14 +267,11 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
 #if HAS_VERTEX_COLORS
     out->color = select3(analytic, vec3_all(ONE), out->color);
 #endif
-#if HAS_ANISOTROPY
-    Frame frame = frame_along(h.normal, h.tangent);
-#else
-    Frame frame = frame_of_normal(h.normal);
+    out->frame.n = select3(analytic, h.normal, out->frame.n);
+#if HAS_TANGENTS
+    out->dp_du = select3(analytic, h.dp_du, out->dp_du);
+    out->dp_dv = select3(analytic, h.dp_dv, out->dp_dv);
 #endif
-    out->frame.s = select3(analytic, frame.s, out->frame.s);
-    out->frame.t = select3(analytic, frame.t, out->frame.t);
-    out->frame.n = select3(analytic, frame.n, out->frame.n);
 }
 #endif
 
@@ -288,21 +284,18 @@ INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
     Vec3 position = instance_point(&m, out->position, &error);
     Vec3 normal = normalize_any_scale(instance_normal(&m, out->normal));
     Vec3 n = normalize_any_scale(instance_normal(&m, out->frame.n));
-#if HAS_ANISOTROPY
-    Frame frame = frame_along(n, normalize_any_scale(instance_vector(&m, out->frame.s)));
-#else
-    Frame frame = frame_of_normal(n);
-#endif
     out->position = select3(m.placed, position, out->position);
     out->error = select3(m.placed, error, out->error);
     out->normal = select3(m.placed, normal, out->normal);
-    out->frame.s = select3(m.placed, frame.s, out->frame.s);
-    out->frame.t = select3(m.placed, frame.t, out->frame.t);
-    out->frame.n = select3(m.placed, frame.n, out->frame.n);
+    out->frame.n = select3(m.placed, n, out->frame.n);
+#if HAS_TANGENTS
+    out->dp_du = select3(m.placed, instance_vector(&m, out->dp_du), out->dp_du);
+    out->dp_dv = select3(m.placed, instance_vector(&m, out->dp_dv), out->dp_dv);
+#endif
 }
 #endif
 
-// The material of the side that is seen, and the frame turned to that side unless light passes through.
+// The material of the side that is seen, and the frame turned to that side unless the material keeps it.
 INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     Vec3 back_along = negate(p->direction);
     out->wi = to_local(out->frame, back_along);
@@ -314,10 +307,10 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
 #else
     out->material = front;
 #endif
-#if HAS_TRANSMISSION
+#if HAS_TRANSMISSION || HAS_NESTING
     UInt known = SELECT(out->material == (UInt)WAVELOBE_NONE, (UInt)0u, out->material);
     UInt flags = GATHER_UINT_FIELD(s.materials, Material, known, flags);
-    Int turned = behind & ((flags & (UInt)MATERIAL_TRANSMISSIVE) == (UInt)0u);
+    Int turned = behind & ((flags & (UInt)MATERIAL_KEEPS_FRAME) == (UInt)0u);
 #else
     Int turned = behind;
 #endif
@@ -339,6 +332,11 @@ INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
 #endif
 #if HAS_INSTANCES
     place_surface(s, p->instance, &out);
+#endif
+#if HAS_TANGENTS
+    out.frame = frame_along(out.frame.n, out.dp_du);
+#else
+    out.frame = frame_of_normal(out.frame.n);
 #endif
     choose_side(s, p, &out);
     return out;

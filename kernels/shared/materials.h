@@ -10,9 +10,18 @@
 #define LOBE_CLASS_GLOSSY 1u
 #define LOBE_CLASS_DIFFUSE 2u
 
-#define MATERIAL_TRANSMISSIVE 1u // keeps its frame when seen from behind
+#define MATERIAL_TRANSMISSIVE 1u // light passes through
 #define MATERIAL_BECKMANN 2u     // microfacets follow Beckmann, otherwise GGX
 #define MATERIAL_NONLINEAR 4u    // plastic: colour shifts of internal scattering
+// Kinds of materials that hold others (struct Nesting); a surface goes through them to one with lobes.
+#define MATERIAL_NORMAL_MAP 8u
+#define MATERIAL_BUMP_MAP 16u
+#define MATERIAL_SIDES 32u       // another on each side
+#define MATERIAL_BLEND 64u
+#define MATERIAL_NESTS (MATERIAL_NORMAL_MAP | MATERIAL_BUMP_MAP | MATERIAL_SIDES | MATERIAL_BLEND)
+#define MATERIAL_KEEPS_FRAME (MATERIAL_TRANSMISSIVE | MATERIAL_NESTS) // is not turned over when seen from behind
+#define MATERIAL_FLIPS_NORMALS 128u    // maps: normals that face away from the viewer are mirrored
+#define MATERIAL_SHADES_TERMINATOR 256u // maps: softens the edge where the mapped normal sees light and the surface does not
 
 // A parameter: a constant, scaled by nothing, or a texture (index) that replaces it.
 struct TexturedRgb {
@@ -50,6 +59,18 @@ struct Material {
     Uint32 extension;                // record from which on the parameters lie that few materials have
 };
 WAVELOBE_CHECK_SIZE(Material, 124);
+
+// A material that holds others: a record of this takes the place of Material in the array.
+struct Nesting {
+    Uint32 lobes; // of all that it holds
+    Uint32 flags;
+    Uint32 inner[2]; // materials, WAVELOBE_NONE: black; of sides front and back; maps have the first alone
+    struct TexturedFloat weight; // blend: share of the second
+    struct TexturedRgb normal;   // normal map: the normal in the tangent frame as (n + 1) / 2
+    float scale;                 // of a normal's x and y; of a bump map's heights
+    Uint32 height;               // bump map: texture, WAVELOBE_NONE: flat
+};
+WAVELOBE_CHECK_SIZE(Nesting, 48);
 
 // Extensions lie in the array of materials, in whole records; each lobe that has one says what is in it.
 

@@ -8,11 +8,12 @@
 
 #define PAIR_FILM 0u
 #define PAIRS_BEFORE_PATH 1u
-#define PAIRS_PER_VERTEX 4u
+#define PAIRS_PER_VERTEX (4u + HAS_BLENDS)
 #define PAIR_LIGHT 0u     // point on the light
 #define PAIR_DIRECTION 1u // direction of the lobe
 #define PAIR_CHOICE 2u    // which light; reflection or refraction
 #define PAIR_SURVIVAL 3u  // which class of lobes; Russian roulette
+#define PAIR_BLEND 4u     // which of two materials
 
 INLINE SampleId path_sample_id(Block block, UInt id, uint seed) {
     UInt sample = path_sample(block, id);

@@ -3,7 +3,7 @@
 #define WAVELOBE_STAGES_SCATTER_DELTA_H
 
 #include "stages/continue_path.h"
-#include "stages/scene_view.h"
+#include "stages/scattering_surface.h"
 
 INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
@@ -11,17 +11,17 @@ INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
     uint n = *delta.count, appended = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(delta, i);
-        Surface surface = load_surface(scene->surfaces, &path);
-        MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SampleId sample = path_sample_id(block, path.id, parameters->seed);
+        Surface surface = load_scattering_surface(scene, &path, sample);
+        MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         Float unused, u;
         sample_2d(sample, vertex_pair(path.depth, PAIR_CHOICE), &unused, &u);
         DeltaSample s = sample_delta_lobe(material_lobes(&surface, in), in, surface.wi, u);
-        Rgb throughput = mul(path.throughput, s.weight);
+        Vec3 direction = normalize3(to_world(surface.frame, s.wo));
+        Rgb throughput = scale(mul(path.throughput, s.weight), MAPPED_SHARE(&surface, direction));
         Float eta = PATH_ETA_OF(path) * s.eta;
         Int alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput,
                              path.live & (max_component(throughput) > 0.0f));
-        Vec3 direction = normalize3(to_world(surface.frame, s.wo));
         appended = append_rays(rays, appended, &path, &surface, direction, throughput, (Float)-1.0f, eta, alive);
     }
     *rays.count = appended;

@@ -5,7 +5,7 @@
 
 #include "sampling/mis.h"
 #include "stages/continue_path.h"
-#include "stages/scene_view.h"
+#include "stages/scattering_surface.h"
 #if HAS_LIGHTS
 
 // How far a shadow ray may look, as a share of its length: short of the light's own surface by the rounding of a hit's
@@ -31,6 +31,7 @@ INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId s
     if (!any_lane(shines)) return at;
 
     LobeValue value = eval_smooth_lobes(lobes, surface->wi, to_local(surface->frame, light.direction));
+    value.f_cos = scale(value.f_cos, MAPPED_SHARE(surface, light.direction));
     Float pdf = choice * light.pdf;
     Float weight = SELECT(light.delta, ONE, power_heuristic(pdf, value.pdf));
     Rgb contribution = scale(mul(mul(path->throughput, value.f_cos), light.radiance), weight / pdf);
@@ -88,10 +89,10 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
     uint n = *paths.count, appended = *rays.count, shadows = block.header->count[QUEUE_SHADOW];
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(paths, i);
-        Surface surface = load_surface(scene->surfaces, &path);
+        SampleId sample = path_sample_id(block, path.id, parameters->seed);
+        Surface surface = load_scattering_surface(scene, &path, sample);
         MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
-        SampleId sample = path_sample_id(block, path.id, parameters->seed);
 #if HAS_LIGHTS
         UInt receiver = surface_receiver(scene->surfaces, &surface);
         shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene->lights, sample, &path, &surface, &lobes, receiver);
@@ -99,11 +100,12 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
         Int alive = path.live & (value.pdf > 0.0f);
-        Rgb throughput = mul(path.throughput, scale(value.f_cos, 1.0f / SELECT(alive, value.pdf, ONE)));
+        Vec3 direction = normalize3(to_world(surface.frame, wo));
+        Float share = MAPPED_SHARE(&surface, direction) / SELECT(alive, value.pdf, ONE);
+        Rgb throughput = mul(path.throughput, scale(value.f_cos, share));
         alive &= max_component(throughput) > 0.0f;
         Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
-        Vec3 direction = normalize3(to_world(surface.frame, wo));
 #if HAS_LIGHT_TREE
         append_uint(rays, PATH_RECEIVER, appended, receiver, lane_bits(alive));
 #endif

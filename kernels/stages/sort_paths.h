@@ -3,8 +3,7 @@
 #ifndef WAVELOBE_STAGES_SORT_PATHS_H
 #define WAVELOBE_STAGES_SORT_PATHS_H
 
-#include "stages/dimensions.h"
-#include "stages/scene_view.h"
+#include "stages/scattering_surface.h"
 
 // Copies the lanes of `bits` of the ray queue's group at slot i to the end of another queue.
 INLINE uint move_paths(Queue to, uint at, Queue rays, uint i, Rgb throughput, uint bits) {
@@ -25,13 +24,13 @@ typedef struct {
 
 #if HAS_LOBE_CHOICE
 // Some material has lobes of several classes, or differs between its sides: the surface decides.
-INLINE Continuation choose_class(Block block, uint seed, SurfaceView view, const TracedPath *path, Int scattering,
-                                 global const struct Texture *textures, global const float *texels) {
-    Surface surface = load_surface(view, path);
-    MaterialInput in = material_input(&surface, view.materials, textures, texels);
+INLINE Continuation choose_class(Block block, const SceneView *scene, const TracedPath *path, Int scattering) {
+    SampleId sample = path_sample_id(block, path->id, scene->parameters->seed);
+    Surface surface = load_scattering_surface(scene, path, sample);
+    MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
     ClassWeights w = class_weights(material_lobes(&surface, in), in, surface.wi);
     Float unused, u;
-    sample_2d(path_sample_id(block, path->id, seed), vertex_pair(path->depth, PAIR_SURVIVAL), &unused, &u);
+    sample_2d(sample, vertex_pair(path->depth, PAIR_SURVIVAL), &unused, &u);
     Float smooth = w.glossy + w.diffuse, all = w.delta + smooth;
     Float at = u * all;
     Int delta = at < w.delta;
@@ -86,7 +85,6 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int pass
 
 INLINE uint run_sort_paths(Block block, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
-    SurfaceView view = scene->surfaces;
     Queue rays = QUEUE(block, RAYS);
     uint n = *rays.count;
     uint passed = 0u, escaped = 0u, emitted = 0u, delta = 0u, glossy = 0u, diffuse = 0u;
@@ -100,8 +98,8 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         if (out) escaped = move_paths(QUEUE(block, ESCAPED), escaped, rays, i, throughput, out);
 #endif
 #if HAS_SURFACE_LIGHTS || !HAS_LOBE_CHOICE
-        UInt shape = gather_uint(view.primitive_shapes, primitive_of_hit(view, SELECT(found, hit, (UInt)0u)));
-        UInt flags = GATHER_UINT_FIELD(view.shapes, Shape, shape, flags);
+        UInt shape = gather_uint(scene->surfaces.primitive_shapes, primitive_of_hit(scene->surfaces, SELECT(found, hit, (UInt)0u)));
+        UInt flags = GATHER_UINT_FIELD(scene->surfaces.shapes, Shape, shape, flags);
 #endif
         UInt depth = read_uint(rays, PATH_DEPTH, i);
 #if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
@@ -117,7 +115,7 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
 #if HAS_VEILED_EMITTERS
         Int veiled = found & ((flags & (UInt)SHAPE_VEILED) != (UInt)0u);
         if (any_lane(veiled)) {
-            Int behind = passes_veil(scene->geometry.opacity, block, view, rays, i, veiled);
+            Int behind = passes_veil(scene->geometry.opacity, block, scene->surfaces, rays, i, veiled);
             found &= !behind;
             passing |= behind;
         }
@@ -127,8 +125,7 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
 #if HAS_LOBE_CHOICE
         TracedPath path = read_traced_path(rays, i);
         path.hit = SELECT(found, path.hit, (UInt)0u);
-        c = choose_class(block, parameters->seed, view, &path, scattering, scene->textures,
-                         scene->texels);
+        c = choose_class(block, scene, &path, scattering);
 #else
         c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
         c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
@@ -149,7 +146,7 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
 #endif
 #if PASSES_BEHIND
         // Last, because it writes over slots of this group and earlier ones.
-        if (any_lane(passing)) passed = pass_through(rays, passed, i, view, passing);
+        if (any_lane(passing)) passed = pass_through(rays, passed, i, scene->surfaces, passing);
 #endif
     }
     block.header->traced = n;

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "scene/conductors.h"
-#include "scene/mitsuba/query.h"
+#include "scene/mitsuba/nested_bsdfs.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -162,60 +162,18 @@ Bsdf read_phong(Query& query) {
                 Sides::front);
 }
 
-Bsdf read_twosided(Query& query) {
-    query.boolean("allow_transmission", false);
-    const std::vector<const Child*> nested = query.children("bsdf");
-    if (query.has_unresolved_children()) return {};
-    if (nested.empty() || nested.size() > 2) {
-        query.fault("holds " + std::to_string(nested.size()) +
-                        " nested BSDFs; expected one for both sides, or one for each",
-                    "");
-        return {};
-    }
-    const Bsdf front = read_bsdf(query.context(), *nested.front()->object);
-    const Bsdf back = read_bsdf(query.context(), *nested.back()->object);
-    if (front.transmissive || back.transmissive)
-        query.fault("holds a BSDF that transmits light; only opaque ones can be nested",
-                    "use the dielectric without `twosided`: it has two sides already");
-    return {front.front, back.front, false};
-}
-
-Bsdf read_mask(Query& query) {
-    Bsdf masked;
-    const Parameter opacity = query.scalar_parameter("opacity", 0.5, {});
-    const std::vector<const Child*> nested = query.children("bsdf");
-    if (query.has_unresolved_children()) return {};
-    if (nested.size() != 1) {
-        query.fault("holds " + std::to_string(nested.size()) + " nested BSDFs; expected one, which `opacity` masks", "");
-        return {};
-    }
-    if (nested.front()->object->type == "mask") {
-        query.fault("holds another mask; only one can be applied", "multiply the two opacities into one mask");
-        return {};
-    }
-    masked = read_bsdf(query.context(), *nested.front()->object);
-    masked.transmissive = true;
-    // A mask of nothing is nothing.
-    if (nested.front()->object->type != "null") masked.opacity.value = opacity;
-    return masked;
-}
-
-// A surface that is not there. Where it emits, it is black otherwise.
-Bsdf read_null(Query& query) {
-    Bsdf nothing = make(query, Diffuse{Parameter{Rgb(0.0F), nullptr}}, Sides::both);
-    nothing.opacity.value.value = Rgb(0.0F);
-    return nothing;
-}
-
 struct Plugin {
     const char* name;
     Bsdf (*read)(Query&);
 };
-constexpr std::array<Plugin, 12> plugins{{
+constexpr std::array<Plugin, 15> plugins{{
+    {"blendbsdf", read_blend},
+    {"bumpmap", read_bump_map},
     {"conductor", read_conductor},
     {"dielectric", read_dielectric},
     {"diffuse", read_diffuse},
     {"mask", read_mask},
+    {"normalmap", read_normal_map},
     {"null", read_null},
     {"phong", read_phong},
     {"plastic", read_plastic},
@@ -232,9 +190,15 @@ Bsdf read_bsdf(Context& context, const Object& object) {
     const auto known = context.bsdfs.find(&object);
     if (known != context.bsdfs.end()) return known->second;
     Bsdf bsdf;
-    if (const auto* plugin = find_plugin(context, object, plugins)) {
+    constexpr int most_levels = 16;
+    if (context.bsdf_levels == most_levels) {
+        context.faults.add(object.place, object.label(),
+                           "BSDFs are nested more than " + std::to_string(most_levels) + " deep", "nest fewer of them");
+    } else if (const auto* plugin = find_plugin(context, object, plugins)) {
         Query query(context, object);
+        ++context.bsdf_levels;
         bsdf = plugin->read(query);
+        --context.bsdf_levels;
         query.finish();
     }
     return context.bsdfs[&object] = bsdf;

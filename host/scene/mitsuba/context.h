@@ -18,6 +18,7 @@ struct Bsdf {
     std::shared_ptr<const Material> back;  // null: black
     bool transmissive = false;
     Opacity opacity{};
+    bool turned = false;  // opaque on both sides: seen from behind it is turned over
 };
 
 struct Context {
@@ -37,6 +38,7 @@ struct Context {
     std::map<const Object*, int> groups;
     std::shared_ptr<const Material> default_material, black_material;
 
+    int bsdf_levels = 0;  // of nested ones that are being read
     int environments = 0;
     int sensors = 0;
     int integrators = 0;
