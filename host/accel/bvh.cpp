@@ -182,7 +182,7 @@ private:
     std::uint32_t add_block(std::span<const std::uint32_t> triangles) {
         TriangleBlock block{};
         for (unsigned lane = 0; lane < width; ++lane) {
-            block.primitive[lane] = lane < triangles.size() ? triangles[lane] : 0;
+            block.primitive[lane] = lane < triangles.size() ? triangles[lane] : HIT_NONE;
             if (lane >= triangles.size()) continue;
             for (unsigned vertex = 0; vertex < 3; ++vertex) {
                 for (unsigned axis = 0; axis < 3; ++axis) {

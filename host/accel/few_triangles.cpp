@@ -1,10 +1,36 @@
 #include "accel/few_triangles.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
 namespace wavelobe {
+namespace {
+
+// Brings the vertices to the unit of the set.
+void summarize(FewTriangleSet& few) {
+    Bounds bounds;
+    for (std::size_t i = 0; i < few.vertices.size(); i += 3) {
+        bounds.extend({few.vertices[i], few.vertices[i + 1], few.vertices[i + 2]});
+    }
+    const glm::dvec3 lower = bounds.lower;
+    const glm::dvec3 upper = bounds.upper;
+    const glm::dvec3 center = 0.5 * (lower + upper);
+    // Larger than from the rounded center to any corner.
+    const double radius = 0.5 * glm::length(upper - lower) * (1 + 1e-6) + 1e-6 * glm::length(center);
+    const double per_length = std::ldexp(1.0, std::clamp(-std::ilogb(std::max(radius, 1e-37)), -100, 100));
+    for (float& coordinate : few.vertices) coordinate *= static_cast<float>(per_length);
+    FewSummary& s = few.summary;
+    for (glm::length_t i = 0; i < 3; ++i) s.center[i] = static_cast<float>(center[i] * per_length);
+    s.radius = static_cast<float>(radius * per_length);
+    s.per_length = static_cast<float>(per_length);
+    s.triangle_count = static_cast<std::uint32_t>(few.triangles.size());
+    s.vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
+}
+
+}  // namespace
 
 FewTriangleSet find_few_triangles(const Bvh& bvh) {
     FewTriangleSet few;
@@ -33,6 +59,7 @@ FewTriangleSet find_few_triangles(const Bvh& bvh) {
         }
     }
     if (few.triangles.size() > FEW_TRIANGLES_MAX || known.size() > FEW_VERTICES_MAX) return {};
+    if (!few.triangles.empty()) summarize(few);
     return few;
 }
 

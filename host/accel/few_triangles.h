@@ -8,8 +8,9 @@
 namespace wavelobe {
 
 struct FewTriangleSet {
-    std::vector<float> vertices;  // 3 each, distinct
+    std::vector<float> vertices;  // 3 each, distinct, in the unit of the summary
     std::vector<FewTriangle> triangles;
+    FewSummary summary{};
 };
 
 // The triangles of a hierarchy, each once, naming the slots where the hierarchy keeps them. Empty when there are too many, or

@@ -97,8 +97,7 @@ void Renderer::State::build_geometry() {
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
     const FewTriangleSet few = scene_data.features.instances ? FewTriangleSet{} : find_few_triangles(bvh);
     scene_data.features.few_triangles = !few.triangles.empty();
-    scene_data.parameters.few_triangle_count = static_cast<std::uint32_t>(few.triangles.size());
-    scene_data.parameters.few_vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
+    scene_data.parameters.few = few.summary;
     stats.setup_parts["bvh"] = seconds_since(start);
     start = Clock::now();
     buffers.upload(scene_data, bvh, few);

@@ -117,7 +117,30 @@ INLINE Int mask_of_bits(uint bits) {
 #endif
 }
 
-INLINE int any_lane(Int m) { return lane_bits(m) != 0u; }
+INLINE int any_lane(Int m) {
+#if LANES == 16 && !WAVELOBE_AVX512
+    int8 half8 = m.lo | m.hi;
+    ulong2 words = as_ulong2(half8.lo | half8.hi);
+    return (words.x | words.y) != 0ul;
+#elif LANES == 8 && !WAVELOBE_AVX2
+    ulong2 words = as_ulong2(m.lo | m.hi);
+    return (words.x | words.y) != 0ul;
+#else
+    return lane_bits(m) != 0u;
+#endif
+}
+
+// A mask that outlives a branch. Where there are mask registers it is carried in one, by way of its bits: as lanes the compiler
+// would carry a whole vector and turn it to and fro.
+#if LANES == 16 && WAVELOBE_AVX512
+typedef ushort KeptMask;
+INLINE KeptMask keep_mask(Int m) { return (ushort)lane_bits(m); }
+INLINE Int kept_mask(KeptMask m) { return mask_of_bits(m); }
+#else
+typedef Int KeptMask;
+INLINE KeptMask keep_mask(Int m) { return m; }
+INLINE Int kept_mask(KeptMask m) { return m; }
+#endif
 
 // Index of the lowest set bit; `bits` is not zero. (Checking tools interpret code for SPIR, and know no such instruction.)
 INLINE uint lowest_bit(uint bits) {

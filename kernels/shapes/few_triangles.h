@@ -17,7 +17,7 @@
 typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
-    uint vertex_count, triangle_count;
+    global const struct FewSummary *summary;
 #if HAS_OPACITY
     OpacityView opacity;
 #endif
@@ -37,7 +37,7 @@ typedef struct {
 
 INLINE void turn_vertices(FewTriangles g, Vec3 origin, Vec3 direction, TurnedVertices *turned) {
     Frame f = frame_of_normal(direction);
-    for (uint i = 0u; i < g.vertex_count; i++) {
+    for (uint i = 0u; i < g.summary->vertex_count; i++) {
         global const float *p = g.vertices + 3u * i;
         Vec3 v = to_local(f, vec3(p[0] - origin.x, p[1] - origin.y, p[2] - origin.z));
         turned->x[i] = v.x;
@@ -46,33 +46,54 @@ INLINE void turn_vertices(FewTriangles g, Vec3 origin, Vec3 direction, TurnedVer
     }
 }
 
-// What the test of one triangle finds: areas opposite to the corners (twice, with the sign of the side), and `depth`, the
-// distance times their sum.
+// What the test of one triangle finds: areas opposite to the second and third corner and their sum, all three taken twice and
+// turned so that `area` is positive, and `depth`, the distance times `area`.
 typedef struct {
-    Float wa, wb, wc, sum, depth;
+    Float wb, wc, area, depth;
     Int inside;
 } TriangleTest;
+
+#define SIGN_BIT ((UInt)0x80000000u)
 
 INLINE TriangleTest test_triangle(const TurnedVertices *v, uint a, uint b, uint c) {
     TriangleTest t;
     // Products are rounded one by one, see above.
-    t.wa = v->x[c] * v->y[b] - v->y[c] * v->x[b];
-    t.wb = v->x[a] * v->y[c] - v->y[a] * v->x[c];
-    t.wc = v->x[b] * v->y[a] - v->y[b] * v->x[a];
-    t.sum = t.wa + t.wb + t.wc;
-    t.depth = madd(t.wa, v->z[a], madd(t.wb, v->z[b], t.wc * v->z[c]));
-    Float least = LESSER(LESSER(t.wa, t.wb), t.wc), most = GREATER(GREATER(t.wa, t.wb), t.wc);
-    t.inside = ((least >= 0.0f) | (most <= 0.0f)) & (t.sum != 0.0f);
+    Float wa = v->x[c] * v->y[b] - v->y[c] * v->x[b];
+    Float wb = v->x[a] * v->y[c] - v->y[a] * v->x[c];
+    Float wc = v->x[b] * v->y[a] - v->y[b] * v->x[a];
+    Float sum = wa + wb + wc, depth = madd(wa, v->z[a], madd(wb, v->z[b], wc * v->z[c]));
+    UInt side = as_UInt(sum) & SIGN_BIT;
+    wa = as_Float(as_UInt(wa) ^ side);
+    t.wb = as_Float(as_UInt(wb) ^ side);
+    t.wc = as_Float(as_UInt(wc) ^ side);
+    t.depth = as_Float(as_UInt(depth) ^ side);
+    t.area = fabs(sum);
+    t.inside = LESSER(LESSER(wa, t.wb), t.wc) >= 0.0f;
     return t;
 }
-
-INLINE Float greatest_of(Float a, Float b, Float c) { return GREATER(GREATER(fabs(a), fabs(b)), fabs(c)); }
 
 // As BLOCK_DISTANCE_ERROR of shapes/triangle_block.h with the rotation in place of the shear: each turned coordinate is a
 // subtraction and a product of three terms, off by at most GAMMA(5) times the sum of the magnitudes of its terms. These
 // are at most sqrt(3) times the length of the vector, and that at most the sum of its turned coordinates, so the error is
-// 26 HALF_ULP q, that of the areas 108 HALF_ULP p q, and that of the distance times the area 498 HALF_ULP p q^2.
+// 26 HALF_ULP q, that of the areas 108 HALF_ULP p q, and that of the distance times the area 498 HALF_ULP p q^2. For p and q
+// stands the distance to the farthest point of a sphere around all triangles.
 #define FEW_DISTANCE_ERROR GAMMA(512)
+
+// The rays as the test of one triangle needs them; lengths are in units of the set (FewSummary).
+typedef struct {
+    Vec3 origin, direction;
+    UInt from;   // number of the triangle that the ray leaves and cannot meet, or HIT_NONE
+    Float unsure; // a depth this small or smaller says nothing about the side on which the triangle lies
+} LaneRay;
+
+INLINE LaneRay lane_ray(FewTriangles g, Vec3 origin, Vec3 direction, UInt from) {
+    global const struct FewSummary *s = g.summary;
+    LaneRay r = {scale(origin, (Float)s->per_length), direction, from, ZERO};
+    Vec3 away = sub(r.origin, vec3((Float)s->center[0], (Float)s->center[1], (Float)s->center[2]));
+    Float farthest = sqrt(length_squared(away)) * (1.0f + GAMMA(4)) + s->radius;
+    r.unsure = FEW_DISTANCE_ERROR * farthest * farthest * farthest;
+    return r;
+}
 
 INLINE Point few_corner(FewTriangles g, uint vertex) {
     global const float *p = g.vertices + 3u * vertex;
@@ -80,55 +101,54 @@ INLINE Point few_corner(FewTriangles g, uint vertex) {
     return corner;
 }
 
-// Decides the lanes of `near`: those hit in (0, limit), with their distances.
-INLINE Int few_near_origin(FewTriangles g, global const struct FewTriangle *triangle, Int near, Vec3 origin, Vec3 direction,
-                           Float limit, Float *t) {
+// Distances to the triangle's plane in the lanes of `near`, 0 in those whose ray does not come to it; decided in double.
+INLINE Float few_near_origin(FewTriangles g, global const struct FewTriangle *triangle, Int near, const LaneRay *r) {
     Point a = few_corner(g, triangle->corner[0]), b = few_corner(g, triangle->corner[1]), c = few_corner(g, triangle->corner[2]);
     float ray[6][LANES] __attribute__((aligned(64))), distance[LANES] __attribute__((aligned(64)));
-    *(Float *)ray[0] = origin.x, *(Float *)ray[1] = origin.y, *(Float *)ray[2] = origin.z;
-    *(Float *)ray[3] = direction.x, *(Float *)ray[4] = direction.y, *(Float *)ray[5] = direction.z;
-    *(Float *)distance = *t;
+    *(Float *)ray[0] = r->origin.x, *(Float *)ray[1] = r->origin.y, *(Float *)ray[2] = r->origin.z;
+    *(Float *)ray[3] = r->direction.x, *(Float *)ray[4] = r->direction.y, *(Float *)ray[5] = r->direction.z;
+    *(Float *)distance = ZERO;
     uint bits = lane_bits(near);
     while (bits) {
         POP_LOWEST_BIT(bits, i);
         distance[i] = distance_to_plane(a, b, c, ray[0][i], ray[1][i], ray[2][i], ray[3][i], ray[4][i], ray[5][i]);
     }
-    *t = *(Float *)distance;
-    return near & (*t > 0.0f) & (*t < limit);
-}
-
-// The rays as the test of one triangle needs them.
-typedef struct {
-    Vec3 origin, direction;
-    UInt from; // number of the triangle that the ray leaves and cannot meet, or HIT_NONE
-} LaneRay;
-
-// Lanes in which triangle `index` is hit in (0, limit), and where.
-INLINE Int hit_triangle(FewTriangles g, const TurnedVertices *v, uint index, const LaneRay *r, Float limit, TriangleTest *t,
-                        Float *distance, Float *inverse) {
-    global const struct FewTriangle *triangle = g.triangles + index;
-    uint a = triangle->corner[0], b = triangle->corner[1], c = triangle->corner[2];
-    *t = test_triangle(v, a, b, c);
-    Int inside = t->inside & (r->from != (UInt)TRIANGLE_NUMBERS(triangle->primitive));
-    if (!any_lane(inside)) return inside;
-    *inverse = 1.0f / t->sum;
-    *distance = t->depth * *inverse;
-    Float across = GREATER(greatest_of(v->x[a], v->x[b], v->x[c]), greatest_of(v->y[a], v->y[b], v->y[c]));
-    Float size = GREATER(across, greatest_of(v->z[a], v->z[b], v->z[c]));
-    Int near = fabs(t->depth) <= FEW_DISTANCE_ERROR * across * size * size;
-    Int hit = inside & !near & (*distance > 0.0f) & (*distance < limit);
-    near &= inside;
-    if (UNLIKELY(any_lane(near))) hit |= few_near_origin(g, triangle, near, r->origin, r->direction, limit, distance);
-    return hit;
+    return *(Float *)distance;
 }
 
 #if HAS_MASKS
 // Lanes whose ray passes triangle `index` where it hits it.
-INLINE Int passes_few(FewTriangles g, uint index, UInt key, const TriangleTest *t, Float inverse) {
+INLINE Int passes_few(FewTriangles g, uint index, UInt key, const TriangleTest *t) {
     uint primitive = g.triangles[index].primitive;
     if (!(primitive & PRIMITIVE_MASKED)) return !TRUE_MASK;
-    return passes_triangle(g.opacity, key, (UInt)(primitive & ~PRIMITIVE_MASKED), t->wb * inverse, t->wc * inverse);
+    return passes_triangle(g.opacity, key, (UInt)(primitive & ~PRIMITIVE_MASKED), t->wb / t->area, t->wc / t->area);
 }
+#endif
+
+// Lanes in which triangle `index` is hit between the origin and the distance depth / area. Distances are compared as
+// fractions, crosswise: a division is as dear as half of the test. (No distance is below one where the area is zero.)
+INLINE Int hit_triangle(FewTriangles g, const TurnedVertices *v, uint index, const LaneRay *r, Float depth, Float area,
+                        TriangleTest *t KEY_PARAMETER) {
+    global const struct FewTriangle *triangle = g.triangles + index;
+    *t = test_triangle(v, triangle->corner[0], triangle->corner[1], triangle->corner[2]);
+    Int inside = t->inside & (r->from != (UInt)TRIANGLE_NUMBERS(triangle->primitive)) & (t->depth >= -r->unsure) &
+                 (t->depth * area < depth * t->area);
+    KeptMask met = keep_mask(inside);
+    Int near = inside & (t->depth <= r->unsure);
+    if (UNLIKELY(any_lane(near))) {
+        t->depth = SELECT(near, few_near_origin(g, triangle, near, r) * t->area, t->depth);
+        met &= keep_mask((t->depth > 0.0f) & (t->depth * area < depth * t->area));
+    }
+#if HAS_MASKS
+    if (any_lane(kept_mask(met))) met &= keep_mask(!passes_few(g, index, key, t));
+#endif
+    return kept_mask(met);
+}
+
+#if HAS_MASKS
+#define PASS_KEY , key
+#else
+#define PASS_KEY
 #endif
 
 typedef struct {
@@ -138,43 +158,42 @@ typedef struct {
 
 // The nearest hit of each ray in (0, limit).
 INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from KEY_PARAMETER) {
-    LaneRay ray = {origin, direction, from};
+    LaneRay ray = lane_ray(g, origin, direction, from);
     TurnedVertices turned;
-    turn_vertices(g, origin, direction, &turned);
-    LaneHit nearest = {limit, ZERO, ZERO, (UInt)HIT_NONE};
-    for (uint i = 0u; i < g.triangle_count; i++) {
+    turn_vertices(g, ray.origin, direction, &turned);
+    TriangleTest nearest = {ZERO, ZERO, ONE, limit * g.summary->per_length, TRUE_MASK};
+    UInt slot = (UInt)HIT_NONE;
+    for (uint i = 0u; i < g.summary->triangle_count; i++) {
         TriangleTest t;
-        Float distance, inverse;
-        Int hit = hit_triangle(g, &turned, i, &ray, nearest.t, &t, &distance, &inverse);
-        if (!any_lane(hit)) continue;
-#if HAS_MASKS
-        hit &= !passes_few(g, i, key, &t, inverse);
-#endif
-        nearest.t = SELECT(hit, distance, nearest.t);
-        nearest.u = SELECT(hit, t.wb * inverse, nearest.u);
-        nearest.v = SELECT(hit, t.wc * inverse, nearest.v);
-        nearest.slot = SELECT(hit, (UInt)g.triangles[i].slot, nearest.slot);
+        Int hit = hit_triangle(g, &turned, i, &ray, nearest.depth, nearest.area, &t PASS_KEY);
+        nearest.depth = SELECT(hit, t.depth, nearest.depth);
+        nearest.area = SELECT(hit, t.area, nearest.area);
+        nearest.wb = SELECT(hit, t.wb, nearest.wb);
+        nearest.wc = SELECT(hit, t.wc, nearest.wc);
+        slot = SELECT(hit, (UInt)g.triangles[i].slot, slot);
     }
-    return nearest;
+    Int found = slot != (UInt)HIT_NONE;
+    LaneHit h = {SELECT(found, nearest.depth / nearest.area * (1.0f / g.summary->per_length), limit), nearest.wb / nearest.area,
+                 nearest.wc / nearest.area, slot};
+    return h;
 }
+
+// How many triangles are tested before asking whether all rays are blocked.
+#define FEW_BETWEEN_LOOKS 4u
 
 // Lanes of `wanted` whose ray hits anything in (0, limit).
 INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from, Int wanted KEY_PARAMETER) {
-    LaneRay ray = {origin, direction, from};
+    LaneRay ray = lane_ray(g, origin, direction, from);
     TurnedVertices turned;
-    turn_vertices(g, origin, direction, &turned);
-    Int blocked = !TRUE_MASK;
-    for (uint i = 0u; i < g.triangle_count; i++) {
+    turn_vertices(g, ray.origin, direction, &turned);
+    Float reach = limit * g.summary->per_length;
+    KeptMask left = keep_mask(wanted);
+    for (uint i = 0u; i < g.summary->triangle_count; i++) {
         TriangleTest t;
-        Float distance, inverse;
-        Int hit = hit_triangle(g, &turned, i, &ray, limit, &t, &distance, &inverse);
-#if HAS_MASKS
-        if (any_lane(hit)) hit &= !passes_few(g, i, key, &t, inverse);
-#endif
-        blocked |= hit;
-        if (!any_lane(wanted & !blocked)) break;
+        left &= keep_mask(!hit_triangle(g, &turned, i, &ray, reach, ONE, &t PASS_KEY));
+        if (i % FEW_BETWEEN_LOOKS == 0u && !any_lane(kept_mask(left))) break;
     }
-    return blocked & wanted;
+    return wanted & !kept_mask(left);
 }
 
 #endif

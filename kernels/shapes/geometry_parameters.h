@@ -26,12 +26,11 @@
 typedef FewTriangles Geometry;
 #define GEOMETRY_PARAMETERS \
     global const float *few_vertices, global const struct FewTriangle *few_triangles OPACITY_PARAMETER
-#define GEOMETRY_VIEW                                                                                   \
-    {few_vertices, few_triangles, parameters->few_vertex_count, parameters->few_triangle_count          \
-     OPACITY_ARGUMENT}
+#define GEOMETRY_VIEW \
+    {few_vertices, few_triangles, &parameters->few OPACITY_ARGUMENT}
 
 #else
-#include "shapes/traversal.h"
+#include "shapes/packet.h"
 
 #if HAS_ANALYTIC
 #define ANALYTIC_ORDER_PARAMETER , global const uint *analytic_order
@@ -70,6 +69,20 @@ INLINE Ray slot_ray(Geometry g, Block block, Queue q, uint origin, uint directio
     };
     return r;
 }
+
+#if HAS_PACKETS
+// The rays of the slots from i on; fields as above.
+INLINE void load_group(RayGroup *g, Queue q, uint origin, uint direction, uint limit, uint from, uint i) {
+    *(Float *)g->ox.value = read_field(q, origin, i);
+    *(Float *)g->oy.value = read_field(q, origin + 1u, i);
+    *(Float *)g->oz.value = read_field(q, origin + 2u, i);
+    *(Float *)g->dx.value = read_field(q, direction, i);
+    *(Float *)g->dy.value = read_field(q, direction + 1u, i);
+    *(Float *)g->dz.value = read_field(q, direction + 2u, i);
+    *(Float *)g->limit.value = read_field(q, limit, i);
+    *(UInt *)g->from = read_uint(q, from, i);
+}
+#endif
 #endif
 
 #endif

@@ -22,6 +22,7 @@ INLINE uint not_passed(OpacityView o, global const uchar *block, uint mask, cons
 #else
     // What does not count must be harmless in the look-up.
     int8 asked = ((uint8)masked & (uint8)(1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u)) != 0u;
+    primitives = asked ? primitives : 0u;
     u = asked ? u : 0.0f;
     v = asked ? v : 0.0f;
 #if LANES == 16

@@ -39,9 +39,10 @@ typedef struct {
 #endif
 } Geometry;
 
-// Per ray: reciprocals, and the byte offsets of the near and far rows of a node.
+// Per ray, or per packet of rays: reciprocals, and the byte offsets of the near and far rows of a node.
 typedef struct {
-    float ox, oy, oz;
+    float near_ox, near_oy, near_oz; // origin, or bounds of several
+    float far_ox, far_oy, far_oz;
     float near_x, near_y, near_z; // reciprocal direction
     float far_x, far_y, far_z;    // the same, widened
     uint near_row_x, near_row_y, near_row_z;
@@ -60,23 +61,27 @@ INLINE float reciprocal_direction(float d) {
     return 1.0f / (fabs(d) < least ? copysign(least, d) : d);
 }
 
+// By the signs of the direction: 1 where negative.
+INLINE void choose_rows(BoxTest *b, uint sx, uint sy, uint sz) {
+    b->near_row_x = sx * NODE_ROW_BYTES, b->far_row_x = (1u - sx) * NODE_ROW_BYTES;
+    b->near_row_y = (2u + sy) * NODE_ROW_BYTES, b->far_row_y = (3u - sy) * NODE_ROW_BYTES;
+    b->near_row_z = (4u + sz) * NODE_ROW_BYTES, b->far_row_z = (5u - sz) * NODE_ROW_BYTES;
+}
+
 INLINE BoxTest box_test(const Ray *r) {
     BoxTest b;
-    b.ox = r->ox, b.oy = r->oy, b.oz = r->oz;
+    b.near_ox = b.far_ox = r->ox, b.near_oy = b.far_oy = r->oy, b.near_oz = b.far_oz = r->oz;
     b.near_x = reciprocal_direction(r->dx), b.near_y = reciprocal_direction(r->dy), b.near_z = reciprocal_direction(r->dz);
     b.far_x = b.near_x * FAR_WIDENING, b.far_y = b.near_y * FAR_WIDENING, b.far_z = b.near_z * FAR_WIDENING;
-    uint sx = b.near_x < 0.0f ? 1u : 0u, sy = b.near_y < 0.0f ? 1u : 0u, sz = b.near_z < 0.0f ? 1u : 0u;
-    b.near_row_x = sx * NODE_ROW_BYTES, b.far_row_x = (1u - sx) * NODE_ROW_BYTES;
-    b.near_row_y = (2u + sy) * NODE_ROW_BYTES, b.far_row_y = (3u - sy) * NODE_ROW_BYTES;
-    b.near_row_z = (4u + sz) * NODE_ROW_BYTES, b.far_row_z = (5u - sz) * NODE_ROW_BYTES;
+    choose_rows(&b, b.near_x < 0.0f ? 1u : 0u, b.near_y < 0.0f ? 1u : 0u, b.near_z < 0.0f ? 1u : 0u);
     return b;
 }
 
 // Bit i: the ray meets child i before `limit`, entering at distance[i].
 INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
-    float8 nx = (row8(node, b->near_row_x) - b->ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->ox) * b->far_x;
-    float8 ny = (row8(node, b->near_row_y) - b->oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->oy) * b->far_y;
-    float8 nz = (row8(node, b->near_row_z) - b->oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->oz) * b->far_z;
+    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
+    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
+    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
     float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
     float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)limit));
     *distance = enter;
@@ -153,6 +158,14 @@ INLINE void closest_analytic(Geometry g, uint reference, const Ray *r, Hit *hit)
 }
 #endif
 
+// Of triangles at the same distance, that of the lowest number is hit: the order of visits shall not matter. Whether the
+// triangle of this number comes before what was hit at its distance; nothing was: the distance is the limit, which is out.
+INLINE int precedes(Geometry g, uint number, uint slot) {
+    if (slot & HIT_ANALYTIC) return 0; // or HIT_NONE
+    global const uchar *block = g.blocks + (size_t)(slot / BVH_WIDTH) * sizeof(struct TriangleBlock);
+    return number < ((global const uint *)(block + BLOCK_PRIMITIVE_BYTES))[slot % BVH_WIDTH];
+}
+
 INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShear *shear, Hit *hit) {
     global const uchar *block = g.blocks + (size_t)index * sizeof(struct TriangleBlock);
     float8 t, u, v;
@@ -164,11 +177,14 @@ INLINE void closest_in_block(Geometry g, uint index, const Ray *r, const RayShea
 #endif
     float ts[8] __attribute__((aligned(32))), us[8] __attribute__((aligned(32))), vs[8] __attribute__((aligned(32)));
     *(float8 *)ts = t;
+    global const uint *numbers = (global const uint *)(block + BLOCK_PRIMITIVE_BYTES);
     POP_LOWEST_BIT(mask, nearest);
     while (mask) {
         POP_LOWEST_BIT(mask, i);
-        nearest = ts[i] < ts[nearest] ? i : nearest;
+        int nearer = (ts[i] < ts[nearest]) | ((ts[i] == ts[nearest]) & (numbers[i] < numbers[nearest]));
+        nearest = nearer ? i : nearest;
     }
+    if (UNLIKELY(ts[nearest] == hit->t) && !precedes(g, numbers[nearest], hit->primitive)) return;
     *(float8 *)us = u;
     *(float8 *)vs = v;
     hit->t = ts[nearest];
@@ -188,21 +204,18 @@ INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, 
 }
 #endif
 
-// The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
-INLINE Hit trace_closest(Geometry g, const Ray *r) {
+// Boxes are searched a little beyond the nearest hit: a triangle's distance may round to less than that of its box.
+#define REACH(t) ((t) * FAR_WIDENING)
+
+// What of the subtree `current` is nearer than *hit.
+INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *found_hit) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
-    Hit hit = {
-        r->limit, 0.0f, 0.0f, HIT_NONE,
-#if HAS_INSTANCES
-        INSTANCE_NONE,
-#endif
-    };
-    if (UNLIKELY(!(r->limit > 0.0f) || !is_finite_ray(r))) return hit; // also a limit that is not a number
+    Hit hit = *found_hit;
     // Every hit has t > 0, so that the sentinel's distance of 0 is below any limit and it is always popped last.
     ulong stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
-    uint top = 1u, current = 0u;
+    uint top = 1u;
 #if HAS_INSTANCES
     const Ray *world = r;
     Ray inner;
@@ -214,7 +227,7 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
         while (!(current & BVH_LEAF)) {
             global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
             float8 distance;
-            uint mask = intersect_children(node, &box, hit.t, &distance);
+            uint mask = intersect_children(node, &box, REACH(hit.t), &distance);
             if (UNLIKELY(mask == 0u)) goto pop;
             current = push_children(mask, distance, (global const uint *)(node + NODE_CHILD_BYTES), stack, &top);
         }
@@ -242,11 +255,11 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
         if (hit.t < found) hit.instance = instance;
         found = hit.t;
 #endif
-        ulong limit_key = (ulong)as_uint(hit.t) << 32, key;
+        ulong limit_key = (ulong)as_uint(REACH(hit.t)) << 32, key;
         do key = stack[--top];
         while (UNLIKELY(key >= limit_key));
         current = (uint)key;
-        if (current == BVH_EMPTY) return hit;
+        if (current == BVH_EMPTY) break;
 #if HAS_INSTANCES
         if (current == BVH_RETURN) {
             hit.t = found = hit.t < entered ? min(hit.t / stretch, outside) : outside;
@@ -259,6 +272,20 @@ INLINE Hit trace_closest(Geometry g, const Ray *r) {
         }
 #endif
     }
+    *found_hit = hit;
+}
+
+// The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
+INLINE Hit trace_closest(Geometry g, const Ray *r) {
+    Hit hit = {
+        r->limit, 0.0f, 0.0f, HIT_NONE,
+#if HAS_INSTANCES
+        INSTANCE_NONE,
+#endif
+    };
+    // Also a limit that is not a number has no room for a hit.
+    if (LIKELY(r->limit > 0.0f && is_finite_ray(r))) trace_closest_from(g, 0u, r, &hit);
+    return hit;
 }
 
 #if HAS_ANALYTIC
@@ -276,14 +303,15 @@ INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
 }
 #endif
 
-// 1 if anything is hit in (0, limit).
-INLINE uint trace_any(Geometry g, const Ray *r) {
+// 1 if anything of the subtree `current` is hit in (0, limit).
+INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
-    if (UNLIKELY(!(r->limit > 0.0f) || !is_finite_ray(r))) return 0u;
+    // Hits at the limit itself do not count.
+    float below = as_float(as_uint(r->limit) - 1u);
     uint stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
-    uint top = 1u, current = 0u;
+    uint top = 1u;
 #if HAS_INSTANCES
     const Ray *world = r;
     Ray inner;
@@ -338,13 +366,18 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
         uint block = current & ~BVH_LEAF;
         global const uchar *triangles = g.blocks + (size_t)block * sizeof(struct TriangleBlock);
         float8 t, u, v;
-        uint mask = intersect_triangle_block(triangles, &shear, r, r->limit, &t, &u, &v);
+        uint mask = intersect_triangle_block(triangles, &shear, r, below, &t, &u, &v);
 #if HAS_MASKS
         if (UNLIKELY(mask)) mask = not_passed(g.opacity, triangles, mask, r, u, v);
 #endif
         if (UNLIKELY(mask)) return 1u;
         current = stack[--top];
     }
+}
+
+// 1 if anything is hit in (0, limit).
+INLINE uint trace_any(Geometry g, const Ray *r) {
+    return LIKELY(r->limit > 0.0f && is_finite_ray(r)) ? trace_any_from(g, 0u, r) : 0u;
 }
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef WAVELOBE_SHARED_SCENE_H
 #define WAVELOBE_SHARED_SCENE_H
 
+#include "shared/bvh.h"
 #include "shared/types.h"
 
 // A surface: the triangles of one mesh, or one analytic shape.
@@ -39,9 +40,9 @@ struct RenderParameters {
     Uint32 light_count;
     Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
-    Uint32 few_triangle_count, few_vertex_count; // of scenes without a hierarchy
+    struct FewSummary few; // of scenes without a hierarchy
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 120);
+WAVELOBE_CHECK_SIZE(RenderParameters, 140);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

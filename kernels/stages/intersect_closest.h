@@ -19,6 +19,21 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
         write_field(rays, PATH_HIT, i, as_Float(hit.slot));
     }
 }
+#elif HAS_PACKETS
+// LANES rays at a time through the hierarchy.
+INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
+    uint n = *rays.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        RayGroup group;
+        GroupHit hit;
+        load_group(&group, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, i);
+        trace_closest_group(geometry, &group, lane_bits(lanes_below(i, n)), &hit);
+        write_field(rays, PATH_T, i, LANES_OF(hit.t));
+        write_field(rays, PATH_U, i, LANES_OF(hit.u));
+        write_field(rays, PATH_V, i, LANES_OF(hit.v));
+        write_field(rays, PATH_HIT, i, as_Float(*(const UInt *)hit.slot));
+    }
+}
 #else
 // Ray by ray through the hierarchy.
 INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {

@@ -17,6 +17,19 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
         add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), lane_bits(live & !blocked));
     }
 }
+#elif HAS_PACKETS
+// LANES rays at a time through the hierarchy.
+INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
+    uint n = *shadow.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        RayGroup group;
+        load_group(&group, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, i);
+        uint live = lane_bits(lanes_below(i, n));
+        uint seen = live & ~trace_any_group(geometry, &group, live);
+        UInt id = SELECT(lanes_below(i, n), read_uint(shadow, SHADOW_ID, i), (UInt)0u);
+        add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), seen);
+    }
+}
 #else
 // Ray by ray through the hierarchy.
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {

@@ -18,9 +18,9 @@ const char* const source = R"(
 
 #define RAY(k) load(rays + (size_t)(k) * count + i)
 
-kernel void trace(global const float *vertices, global const struct FewTriangle *triangles, uint vertex_count,
-                  uint triangle_count, global const float *rays, uint count, global float *hits) {
-    FewTriangles geometry = {vertices, triangles, vertex_count, triangle_count};
+kernel void trace(global const float *vertices, global const struct FewTriangle *triangles,
+                  global const struct FewSummary *summary, global const float *rays, uint count, global float *hits) {
+    FewTriangles geometry = {vertices, triangles, summary};
     uint first = (uint)get_global_id(0) * 16u;
     for (uint i = first; i < first + 16u; i += LANES) {
         Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
@@ -52,12 +52,11 @@ public:
             std::memcpy(&packed[7 * count + i], &rays[i].from, sizeof(float));
         }
         std::vector<float> hits(5 * count);
-        const auto vertex_count = static_cast<cl_uint>(few.vertices.size() / 3);
-        const auto triangle_count = static_cast<cl_uint>(few.triangles.size());
         const auto ray_count = static_cast<cl_uint>(count);
         const std::vector<float> vertices = few.vertices.empty() ? std::vector<float>(3) : few.vertices;
+        const std::vector<FewSummary> summary{few.summary};
         const std::vector<FewTriangle> triangles = few.triangles.empty() ? std::vector<FewTriangle>(1) : few.triangles;
-        probe_.run("trace", count / 16, vertices, triangles, vertex_count, triangle_count, packed, ray_count, hits);
+        probe_.run("trace", count / 16, vertices, triangles, summary, packed, ray_count, hits);
         std::vector<TestHit> out(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             out[i].t = hits[i];

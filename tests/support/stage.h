@@ -56,8 +56,7 @@ public:
         }
         const FewTriangleSet set = few ? find_few_triangles(bvh) : FewTriangleSet{};
         scene_.features.few_triangles = few;
-        scene_.parameters.few_triangle_count = static_cast<std::uint32_t>(set.triangles.size());
-        scene_.parameters.few_vertex_count = static_cast<std::uint32_t>(set.vertices.size() / 3);
+        scene_.parameters.few = set.summary;
         buffers_.upload(scene_, bvh, set);
         buffers_.add_blocks(1, block_words(scene_.features, slots));
         program_.emplace(device(), program_source(scene_.features, lanes, slots) + layout_source + extra, "stage.cl");

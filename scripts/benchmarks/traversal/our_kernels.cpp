@@ -14,19 +14,25 @@ const char* const source = R"(
 #include "shapes/few_triangles.h"
 #define LANE_RAY(k) load(&RAY(k))
 #define LOOP_STEP LANES
-#define GEOMETRY FewTriangles geometry = {few_vertices, few_triangles, few_vertex_count, few_triangle_count}
+#define GEOMETRY FewTriangles geometry = {few_vertices, few_triangles, few_summary}
 #define TRACE_RAYS                                                                                             \
     Vec3 origin = vec3(LANE_RAY(0), LANE_RAY(1), LANE_RAY(2)), along = vec3(LANE_RAY(3), LANE_RAY(4), LANE_RAY(5))
 #else
-#include "shapes/traversal.h"
-#define LOOP_STEP 1u
+#include "shapes/packet.h"
+#define LOOP_STEP LANES
 #define GEOMETRY Geometry geometry = {nodes, blocks}
-#define TRACE_RAYS Ray ray = {RAY(0), RAY(1), RAY(2), RAY(3), RAY(4), RAY(5), RAY(6), as_uint(RAY(7))}
+#define LANE_RAY(k) load(&RAY(k))
+#define TRACE_RAYS                                                                                             \
+    RayGroup group;                                                                                            \
+    *(Float *)group.ox.value = LANE_RAY(0), *(Float *)group.oy.value = LANE_RAY(1);                            \
+    *(Float *)group.oz.value = LANE_RAY(2), *(Float *)group.dx.value = LANE_RAY(3);                            \
+    *(Float *)group.dy.value = LANE_RAY(4), *(Float *)group.dz.value = LANE_RAY(5);                            \
+    *(Float *)group.limit.value = LANE_RAY(6), *(UInt *)group.from = as_UInt(LANE_RAY(7))
 #endif
 
 #define PARAMETERS                                                                                             \
     global const uchar *nodes, global const uchar *blocks, global const float *few_vertices,                   \
-        global const struct FewTriangle *few_triangles, uint few_vertex_count, uint few_triangle_count,        \
+        global const struct FewTriangle *few_triangles, global const struct FewSummary *few_summary,           \
         global const float *rays, uint count, global float *hits
 #define FOR_RAYS                                                                                               \
     GEOMETRY;                                                                                                  \
@@ -41,9 +47,10 @@ kernel void closest_hits(PARAMETERS) {
         store(hits + i, hit.t);
         store(hits + count + i, as_Float(hit.slot));
 #else
-        Hit hit = trace_closest(geometry, &ray);
-        hits[i] = hit.t;
-        hits[count + i] = as_float(hit.primitive);
+        GroupHit hit;
+        trace_closest_group(geometry, &group, lane_bits(TRUE_MASK), &hit);
+        store(hits + i, LANES_OF(hit.t));
+        store(hits + count + i, as_Float(*(const UInt *)hit.slot));
 #endif
     }
 }
@@ -55,7 +62,8 @@ kernel void any_hits(PARAMETERS) {
         Int blocked = any_of_few(geometry, origin, along, LANE_RAY(6), as_UInt(LANE_RAY(7)), TRUE_MASK);
         store(hits + i, SELECT(blocked, (Float)-INFINITY, LANE_RAY(6)));
 #else
-        hits[i] = trace_any(geometry, &ray) ? -INFINITY : RAY(6);
+        uint blocked = trace_any_group(geometry, &group, lane_bits(TRUE_MASK));
+        store(hits + i, SELECT(mask_of_bits(blocked), (Float)-INFINITY, LANE_RAY(6)));
 #endif
     }
 }
@@ -66,8 +74,7 @@ void set_mesh(Kernel& kernel, const MeshBuffers& mesh) {
     kernel.set(1, mesh.blocks.memory());
     kernel.set(2, mesh.few_vertices.memory());
     kernel.set(3, mesh.few_triangles.memory());
-    kernel.set(4, mesh.few_vertex_count);
-    kernel.set(5, mesh.few_triangle_count);
+    kernel.set(4, mesh.few_summary.memory());
 }
 
 }  // namespace
@@ -84,9 +91,9 @@ OurKernels::OurKernels(const Device& device, const MeshBuffers& mesh, const std:
 
 double OurKernels::trace(bool any_hit, std::size_t count, const Buffer& rays, const Buffer& hits) {
     Kernel& kernel = any_hit ? any_ : closest_;
-    kernel.set(6, rays.memory());
-    kernel.set(7, static_cast<cl_uint>(count));
-    kernel.set(8, hits.memory());
+    kernel.set(5, rays.memory());
+    kernel.set(6, static_cast<cl_uint>(count));
+    kernel.set(7, hits.memory());
     const ClEvent event = kernel.launch(device_, (count + rays_per_item - 1) / rays_per_item);
     device_.finish();
     return event_seconds(event);

@@ -11,16 +11,14 @@ namespace wavelobe::benchmark {
 struct MeshBuffers {
     MeshBuffers(const Device& device, const Bvh& bvh, const FewTriangleSet& set)
         : few(!set.triangles.empty()),
-          few_vertex_count(static_cast<cl_uint>(set.vertices.size() / 3)),
-          few_triangle_count(static_cast<cl_uint>(set.triangles.size())),
           nodes(Buffer::of<BvhNode>(device, bvh.nodes)),
           blocks(Buffer::of<TriangleBlock>(device, bvh.blocks)),
           few_vertices(Buffer::of<float>(device, few ? set.vertices : std::vector<float>(3))),
-          few_triangles(Buffer::of<FewTriangle>(device, few ? set.triangles : std::vector<FewTriangle>(1))) {}
+          few_triangles(Buffer::of<FewTriangle>(device, few ? set.triangles : std::vector<FewTriangle>(1))),
+          few_summary(Buffer::of<FewSummary>(device, std::vector<FewSummary>{set.summary})) {}
 
     bool few;
-    cl_uint few_vertex_count, few_triangle_count;
-    Buffer nodes, blocks, few_vertices, few_triangles;
+    Buffer nodes, blocks, few_vertices, few_triangles, few_summary;
 };
 
 class OurKernels {
