@@ -30,7 +30,7 @@ typedef FewTriangles Geometry;
     {few_vertices, few_triangles, &parameters->few OPACITY_ARGUMENT}
 
 #else
-#include "shapes/packet.h"
+#include "shapes/trace_groups.h"
 
 #if HAS_ANALYTIC
 #define ANALYTIC_ORDER_PARAMETER , global const uint *analytic_order

@@ -1,13 +1,5 @@
-// Groups of LANES rays through the hierarchy. Rays of a group whose directions agree in their signs and their largest
-// axis go together as a packet: a node is tested once for all of them by intervals, then each child that may be hit for each
-// ray; a triangle is tested for all rays at once. What has at most SINGLE_RAYS rays left goes on ray by ray, and so do
-// groups that never agreed.
-// Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing Algorithm" (intervals); Benthin, Wald, Woop, Ernst, Mark 2012,
-// "Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions on the Intel MIC Architecture" (the way down to
-// single rays).
-//
-// A ray meets the same triangles with the same rounding in a packet and alone, and of equally near ones the same is taken
-// (nearer_hit), so that how rays are grouped changes no bit.
+// Rays of a group whose directions agree in their signs and their largest axis, as a packet: what they have in common, and
+// the tests of one box and one triangle against all of them at once (shapes/trace_groups.h has the traversal).
 #ifndef WAVELOBE_SHAPES_PACKET_H
 #define WAVELOBE_SHAPES_PACKET_H
 
@@ -17,13 +9,12 @@
 #define HAS_PACKETS (LANES > 1 && !HAS_ANALYTIC && !HAS_INSTANCES && !HAS_MASKS)
 #if HAS_PACKETS
 
-#define SINGLE_RAYS 3u   // so many are cheaper one by one
-#define LEAST_PACKET (LANES / 2u) // fewer are not worth the set-up
+#define LEAST_PACKET (LANES / 2u) // fewer rays are not worth the set-up
 
 #define TEST_VALUES Float
 #define TEST_MASK Int
 #define TEST(name) name##_lanes
-#include "shapes/triangle_test.h"
+#include "shapes/triangle_test.def"
 #undef TEST_VALUES
 #undef TEST_MASK
 #undef TEST
@@ -205,166 +196,6 @@ INLINE uint sound_rays(const RayGroup *g, uint live) {
 #pragma unroll
     for (uint i = 0u; i < 6u; i++) sum += LANES_OF(*parts[i]) - LANES_OF(*parts[i]);
     return live & lane_bits((sum == 0.0f) & (LANES_OF(g->limit) > 0.0f));
-}
-
-// ---- closest hits --------------------------------------------------------------------------------------------
-
-typedef struct {
-    ulong key[BVH_STACK];
-    ushort rays[BVH_STACK];
-    uint top;
-} PacketStack;
-
-// Pushes the children of a node that rays of the packet meet, farthest first, and returns the nearest, or BVH_EMPTY.
-INLINE uint push_packet_children(global const uchar *node, const Packet *p, Float reach, float farthest, uint *rays,
-                                 PacketStack *stack) {
-    float8 distance;
-    uint mask = intersect_children(node, &p->all, farthest, &distance);
-    float entered[8] __attribute__((aligned(32)));
-    *(float8 *)entered = distance;
-    global const uint *child = (global const uint *)(node + NODE_CHILD_BYTES);
-    ulong nearest = ~0ul;
-    uint nearest_rays = 0u, base = stack->top, n = base;
-    while (mask) {
-        POP_LOWEST_BIT(mask, i);
-        uint in = *rays & rays_in_child(node, i, p, reach);
-        if (in == 0u) continue;
-        ulong key = CHILD_KEY(i);
-        if (nearest_rays == 0u) { // the first
-            nearest = key, nearest_rays = in;
-            continue;
-        }
-        if (key < nearest) {
-            ulong other = nearest;
-            uint others = nearest_rays;
-            nearest = key, nearest_rays = in;
-            key = other, in = others;
-        }
-        uint j = n++;
-        for (; j > base && stack->key[j - 1u] < key; j--) stack->key[j] = stack->key[j - 1u], stack->rays[j] = stack->rays[j - 1u];
-        stack->key[j] = key, stack->rays[j] = (ushort)in;
-    }
-    stack->top = n;
-    *rays = nearest_rays;
-    return nearest_rays ? (uint)nearest : BVH_EMPTY;
-}
-
-// Numbers of the triangles that the rays of a group have hit; anything where there is none.
-INLINE void closest_for_packet(Geometry g, uint index, uint rays, const Packet *p, const RayGroup *group, GroupHit *hit) {
-    global const uchar *block = g.blocks + (size_t)index * sizeof(struct TriangleBlock);
-    global const uint *numbers = (global const uint *)(block + BLOCK_PRIMITIVE_BYTES);
-    for (uint i = 0u; i < BVH_WIDTH && numbers[i] != HIT_NONE; i++) {
-        Float nearest = LANES_OF(hit->t), t, u, v;
-        uint met = rays_at_triangle(block, i, numbers[i], rays, p, group, nearest, &t, &u, &v);
-        if (met == 0u) continue;
-        uint equal = met & lane_bits(t == nearest);
-        while (UNLIKELY(equal)) {
-            POP_LOWEST_BIT(equal, k);
-            if (!precedes(g, numbers[i], hit->slot[k])) met &= ~(1u << k);
-        }
-        Int taken = mask_of_bits(met);
-        *(Float *)hit->t.value = SELECT(taken, t, nearest);
-        *(Float *)hit->u.value = SELECT(taken, u, LANES_OF(hit->u));
-        *(Float *)hit->v.value = SELECT(taken, v, LANES_OF(hit->v));
-        *(UInt *)hit->slot = SELECT(taken, (UInt)(index * BVH_WIDTH + i), *(const UInt *)hit->slot);
-    }
-}
-
-INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, GroupHit *hit) {
-    while (rays) {
-        POP_LOWEST_BIT(rays, k);
-        Ray r = group_ray(group, k);
-        Hit h = {hit->t.value[k], hit->u.value[k], hit->v.value[k], hit->slot[k]};
-        trace_closest_from(g, start, &r, &h);
-        hit->t.value[k] = h.t, hit->u.value[k] = h.u, hit->v.value[k] = h.v, hit->slot[k] = h.primitive;
-    }
-}
-
-// The nearest hits of the `live` rays in (0, limit).
-INLINE void trace_closest_group(Geometry g, const RayGroup *group, uint live, GroupHit *hit) {
-    hit->t = group->limit;
-    *(Float *)hit->u.value = ZERO;
-    *(Float *)hit->v.value = ZERO;
-    *(UInt *)hit->slot = (UInt)HIT_NONE;
-    uint left = sound_rays(group, live);
-    PacketStack stack;
-    while (left) {
-        Packet p = make_packet(group, left);
-        // A ray alone is a packet that is already at its end: so both ways share the code.
-        int together = popcount(p.rays) >= LEAST_PACKET;
-        uint current = 0u, rays = together ? p.rays : left;
-        left &= ~rays;
-        stack.key[0] = BVH_EMPTY;
-        stack.top = 1u;
-        while (current != BVH_EMPTY) {
-            Float reach = LANES_OF(hit->t) * FAR_WIDENING;
-            float farthest = greatest_lane(SELECT(mask_of_bits(rays), reach, ZERO));
-            if (!together || popcount(rays) <= SINGLE_RAYS) {
-                closest_one_by_one(g, current, rays, group, hit);
-            } else if (current & BVH_LEAF) {
-                closest_for_packet(g, current & ~BVH_LEAF, rays, &p, group, hit);
-            } else {
-                current = push_packet_children(g.nodes + ((size_t)current << NODE_SHIFT), &p, reach, farthest, &rays, &stack);
-                if (current != BVH_EMPTY) continue;
-            }
-            stack.top--;
-            current = (uint)stack.key[stack.top];
-            rays = stack.rays[stack.top];
-        }
-    }
-}
-
-// ---- any hit -------------------------------------------------------------------------------------------------
-
-// Bits of the `live` rays that hit anything in (0, limit).
-INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
-    uint left = sound_rays(group, live), blocked = 0u;
-    Float limit = LANES_OF(group->limit);
-    // Hits at the limit itself do not count.
-    Float below = as_Float(as_UInt(limit) - (UInt)1u);
-    PacketStack stack;
-    while (left) {
-        Packet p = make_packet(group, left);
-        int together = popcount(p.rays) >= LEAST_PACKET;
-        uint current = 0u, rays = together ? p.rays : left;
-        left &= ~rays;
-        float farthest = greatest_lane(SELECT(mask_of_bits(rays), limit, ZERO));
-        stack.key[0] = BVH_EMPTY;
-        stack.top = 1u;
-        while (current != BVH_EMPTY) {
-            if (!together || popcount(rays) <= SINGLE_RAYS) {
-                for (uint some = rays; some;) {
-                    POP_LOWEST_BIT(some, k);
-                    Ray r = group_ray(group, k);
-                    blocked |= trace_any_from(g, current, &r) << k;
-                }
-            } else if (current & BVH_LEAF) {
-                global const uchar *block = g.blocks + (size_t)(current & ~BVH_LEAF) * sizeof(struct TriangleBlock);
-                global const uint *numbers = (global const uint *)(block + BLOCK_PRIMITIVE_BYTES);
-                for (uint i = 0u; i < BVH_WIDTH && numbers[i] != HIT_NONE; i++) {
-                    Float t, u, v;
-                    blocked |= rays_at_triangle(block, i, numbers[i], rays & ~blocked, &p, group, below, &t, &u, &v);
-                }
-            } else {
-                global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
-                global const uint *child = (global const uint *)(node + NODE_CHILD_BYTES);
-                float8 distance;
-                uint mask = intersect_children(node, &p.all, farthest, &distance);
-                while (mask) {
-                    POP_LOWEST_BIT(mask, i);
-                    uint in = rays & rays_in_child(node, i, &p, limit);
-                    stack.key[stack.top] = child[i], stack.rays[stack.top] = (ushort)in;
-                    stack.top += in != 0u;
-                }
-            }
-            do { // passing by what only blocked rays had left
-                stack.top--;
-                current = (uint)stack.key[stack.top];
-                rays = stack.rays[stack.top] & ~blocked;
-            } while (current != BVH_EMPTY && rays == 0u);
-        }
-    }
-    return blocked;
 }
 
 #endif

@@ -1,9 +1,7 @@
 // Single-ray traversal of the eight-wide hierarchy: closest hit and any hit.
 //
-// A node costs one test of eight boxes on float8. Children are visited in order of distance: the two to four that are
-// usually hit are sorted as 64-bit keys (distance bits << 32 | child), which a positive float's bits allow.
-// Boxes are widened on their far side so that a ray that grazes them is never lost to rounding (Ize 2013, "Robust BVH Ray
-// Traversal").
+// Children of a node (shapes/box_test.h) are visited in order of distance: the two to four that are usually hit are sorted as
+// 64-bit keys (distance bits << 32 | child), which a positive float's bits allow.
 //
 // An instance is a leaf: the ray goes on in the space of its group, from the root of the group's hierarchy on, and comes
 // back where the stack says so.
@@ -12,7 +10,7 @@
 #ifndef WAVELOBE_SHAPES_TRAVERSAL_H
 #define WAVELOBE_SHAPES_TRAVERSAL_H
 
-#include "core/rounding.h"
+#include "shapes/box_test.h"
 #include "shapes/triangle_block.h"
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
@@ -38,55 +36,6 @@ typedef struct {
     global const struct Instance *instances;
 #endif
 } Geometry;
-
-// Per ray, or per packet of rays: reciprocals, and the byte offsets of the near and far rows of a node.
-typedef struct {
-    float near_ox, near_oy, near_oz; // origin, or bounds of several
-    float far_ox, far_oy, far_oz;
-    float near_x, near_y, near_z; // reciprocal direction
-    float far_x, far_y, far_z;    // the same, widened
-    uint near_row_x, near_row_y, near_row_z;
-    uint far_row_x, far_row_y, far_row_z;
-} BoxTest;
-
-#define NODE_ROW_BYTES 32u
-#define NODE_CHILD_BYTES 192u
-#define NODE_SHIFT 8u
-#define FAR_WIDENING (1.0f + 2.0f * GAMMA(3))
-
-// A component of a unit direction this small moves a ray by less than the smallest step of any coordinate; keeping its
-// reciprocal finite avoids 0 * infinity for origins that lie on a box.
-INLINE float reciprocal_direction(float d) {
-    const float least = 0x1p-60f;
-    return 1.0f / (fabs(d) < least ? copysign(least, d) : d);
-}
-
-// By the signs of the direction: 1 where negative.
-INLINE void choose_rows(BoxTest *b, uint sx, uint sy, uint sz) {
-    b->near_row_x = sx * NODE_ROW_BYTES, b->far_row_x = (1u - sx) * NODE_ROW_BYTES;
-    b->near_row_y = (2u + sy) * NODE_ROW_BYTES, b->far_row_y = (3u - sy) * NODE_ROW_BYTES;
-    b->near_row_z = (4u + sz) * NODE_ROW_BYTES, b->far_row_z = (5u - sz) * NODE_ROW_BYTES;
-}
-
-INLINE BoxTest box_test(const Ray *r) {
-    BoxTest b;
-    b.near_ox = b.far_ox = r->ox, b.near_oy = b.far_oy = r->oy, b.near_oz = b.far_oz = r->oz;
-    b.near_x = reciprocal_direction(r->dx), b.near_y = reciprocal_direction(r->dy), b.near_z = reciprocal_direction(r->dz);
-    b.far_x = b.near_x * FAR_WIDENING, b.far_y = b.near_y * FAR_WIDENING, b.far_z = b.near_z * FAR_WIDENING;
-    choose_rows(&b, b.near_x < 0.0f ? 1u : 0u, b.near_y < 0.0f ? 1u : 0u, b.near_z < 0.0f ? 1u : 0u);
-    return b;
-}
-
-// Bit i: the ray meets child i before `limit`, entering at distance[i].
-INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
-    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
-    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
-    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
-    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
-    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)limit));
-    *distance = enter;
-    return lane_bits8(enter <= leave);
-}
 
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }

@@ -1,9 +1,9 @@
-// One ray against eight triangles (shapes/triangle_test.h).
+// One ray against eight triangles (shapes/triangle_test.def).
 #ifndef WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 #define WAVELOBE_SHAPES_TRIANGLE_BLOCK_H
 
+#include "shapes/box_test.h"
 #include "shapes/near_plane.h"
-#include "shapes/ray.h"
 
 // The shear that turns the ray into the unit z axis, and the byte offsets of the permuted coordinates within a vertex.
 typedef struct {
@@ -35,14 +35,10 @@ INLINE RayShear ray_shear(const Ray *r) {
     return s;
 }
 
-INLINE float8 row8(global const uchar *base, uint byte_offset) {
-    return *(global const float8 *)(base + byte_offset);
-}
-
 #define TEST_VALUES float8
 #define TEST_MASK int8
 #define TEST(name) name##8
-#include "shapes/triangle_test.h"
+#include "shapes/triangle_test.def"
 #undef TEST_VALUES
 #undef TEST_MASK
 #undef TEST

@@ -30,8 +30,10 @@ struct TestHit {
 
 class TraversalProbe {
 public:
-    explicit TraversalProbe(bool portable = false)
-        : probe_(source, {.lanes = 16, .defines = portable ? "-DWAVELOBE_PORTABLE" : ""}) {}
+    // With `groups`, rays go through the hierarchy in groups of as many as there are lanes, in their order.
+    explicit TraversalProbe(bool portable = false, bool groups = false, int lanes = 16)
+        : probe_(source, {.lanes = lanes,
+                          .defines = std::string(portable ? "-DWAVELOBE_PORTABLE " : "") + (groups ? "-DGROUPS=1" : "-DGROUPS=0")}) {}
 
     std::vector<TestHit> trace(const Bvh& bvh, const std::vector<TestRay>& rays) {
         std::vector<TestHit> hits(rays.size());
@@ -46,14 +48,37 @@ private:
     static constexpr const char* source = R"(
 #define HAS_ANALYTIC 0
 #define BVH_STACK 512u
-#include "shapes/traversal.h"
+#include "shapes/trace_groups.h"
 
 typedef struct { float t, u, v; uint slot, any; } TestHit;
+
+#if GROUPS
+void trace_group(Geometry geometry, global const float *rays, uint first, uint count, global TestHit *hits) {
+    RayGroup group;
+    for (uint k = 0; k < LANES; k++) {
+        global const float *p = rays + (size_t)min(first + k, count - 1u) * 8u;
+        group.ox.value[k] = p[0], group.oy.value[k] = p[1], group.oz.value[k] = p[2];
+        group.dx.value[k] = p[3], group.dy.value[k] = p[4], group.dz.value[k] = p[5];
+        group.limit.value[k] = p[6], group.from[k] = as_uint(p[7]);
+    }
+    uint live = lane_bits(LANE_INDEX + (UInt)first < (UInt)count);
+    GroupHit hit;
+    trace_closest_group(geometry, &group, live, &hit);
+    uint any = trace_any_group(geometry, &group, live);
+    for (uint k = 0; k < min(LANES + 0u, count - first); k++) {
+        TestHit out = {hit.t.value[k], hit.u.value[k], hit.v.value[k], hit.slot[k], any >> k & 1u};
+        hits[first + k] = out;
+    }
+}
+#endif
 
 kernel void trace(global const uchar *nodes, global const uchar *blocks, global const float *rays, uint count,
                   global TestHit *hits) {
     Geometry geometry = {nodes, blocks};
     uint first = (uint)get_global_id(0) * 256u;
+#if GROUPS
+    for (uint i = first; i < min(first + 256u, count); i += LANES) trace_group(geometry, rays, i, count, hits);
+#else
     for (uint i = first; i < min(first + 256u, count); i++) {
         global const float *p = rays + (size_t)i * 8u;
         Ray ray = {p[0], p[1], p[2], p[3], p[4], p[5], p[6], as_uint(p[7])};
@@ -61,6 +86,7 @@ kernel void trace(global const uchar *nodes, global const uchar *blocks, global 
         TestHit out = {h.t, h.u, h.v, h.primitive, trace_any(geometry, &ray)};
         hits[i] = out;
     }
+#endif
 }
 )";
     Probe probe_;

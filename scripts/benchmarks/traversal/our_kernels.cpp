@@ -18,7 +18,7 @@ const char* const source = R"(
 #define TRACE_RAYS                                                                                             \
     Vec3 origin = vec3(LANE_RAY(0), LANE_RAY(1), LANE_RAY(2)), along = vec3(LANE_RAY(3), LANE_RAY(4), LANE_RAY(5))
 #else
-#include "shapes/packet.h"
+#include "shapes/trace_groups.h"
 #define LOOP_STEP LANES
 #define GEOMETRY Geometry geometry = {nodes, blocks}
 #define LANE_RAY(k) load(&RAY(k))

@@ -1,0 +1,63 @@
+// A ray, or a packet of rays, against the eight boxes of a node on float8.
+// Boxes are widened on their far side so that a ray that grazes them is never lost to rounding (Ize 2013, "Robust BVH Ray
+// Traversal").
+#ifndef WAVELOBE_SHAPES_BOX_TEST_H
+#define WAVELOBE_SHAPES_BOX_TEST_H
+
+#include "core/rounding.h"
+#include "shapes/ray.h"
+
+INLINE float8 row8(global const uchar *base, uint byte_offset) {
+    return *(global const float8 *)(base + byte_offset);
+}
+
+// Per ray, or per packet of rays: reciprocals, and the byte offsets of the near and far rows of a node.
+typedef struct {
+    float near_ox, near_oy, near_oz; // origin, or bounds of several
+    float far_ox, far_oy, far_oz;
+    float near_x, near_y, near_z; // reciprocal direction
+    float far_x, far_y, far_z;    // the same, widened
+    uint near_row_x, near_row_y, near_row_z;
+    uint far_row_x, far_row_y, far_row_z;
+} BoxTest;
+
+#define NODE_ROW_BYTES 32u
+#define NODE_CHILD_BYTES 192u
+#define NODE_SHIFT 8u
+#define FAR_WIDENING (1.0f + 2.0f * GAMMA(3))
+
+// A component of a unit direction this small moves a ray by less than the smallest step of any coordinate; keeping its
+// reciprocal finite avoids 0 * infinity for origins that lie on a box.
+INLINE float reciprocal_direction(float d) {
+    const float least = 0x1p-60f;
+    return 1.0f / (fabs(d) < least ? copysign(least, d) : d);
+}
+
+// By the signs of the direction: 1 where negative.
+INLINE void choose_rows(BoxTest *b, uint sx, uint sy, uint sz) {
+    b->near_row_x = sx * NODE_ROW_BYTES, b->far_row_x = (1u - sx) * NODE_ROW_BYTES;
+    b->near_row_y = (2u + sy) * NODE_ROW_BYTES, b->far_row_y = (3u - sy) * NODE_ROW_BYTES;
+    b->near_row_z = (4u + sz) * NODE_ROW_BYTES, b->far_row_z = (5u - sz) * NODE_ROW_BYTES;
+}
+
+INLINE BoxTest box_test(const Ray *r) {
+    BoxTest b;
+    b.near_ox = b.far_ox = r->ox, b.near_oy = b.far_oy = r->oy, b.near_oz = b.far_oz = r->oz;
+    b.near_x = reciprocal_direction(r->dx), b.near_y = reciprocal_direction(r->dy), b.near_z = reciprocal_direction(r->dz);
+    b.far_x = b.near_x * FAR_WIDENING, b.far_y = b.near_y * FAR_WIDENING, b.far_z = b.near_z * FAR_WIDENING;
+    choose_rows(&b, b.near_x < 0.0f ? 1u : 0u, b.near_y < 0.0f ? 1u : 0u, b.near_z < 0.0f ? 1u : 0u);
+    return b;
+}
+
+// Bit i: the ray meets child i before `limit`, entering at distance[i].
+INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
+    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
+    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
+    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
+    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
+    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)limit));
+    *distance = enter;
+    return lane_bits8(enter <= leave);
+}
+
+#endif
