@@ -139,10 +139,10 @@ INLINE uint rays_in_child(global const uchar *node, uint i, const Packet *p, Flo
     return lane_bits(enter <= leave);
 }
 
-INLINE Sheared_lanes corners_in_lanes(global const uchar *block, uint i, const Packet *p) {
+INLINE Corners_lanes corners_in_lanes(global const uchar *block, uint i, const Packet *p) {
     global const uchar *a = block + 4u * i, *b = a + BLOCK_VERTEX_BYTES, *c = b + BLOCK_VERTEX_BYTES;
 #define CORNER(vertex, k) ((Float)*(global const float *)((vertex) + p->k))
-    Sheared_lanes t = {
+    Corners_lanes t = {
         CORNER(a, kx) - p->permuted.x, CORNER(a, ky) - p->permuted.y, CORNER(a, kz) - p->permuted.z,
         CORNER(b, kx) - p->permuted.x, CORNER(b, ky) - p->permuted.y, CORNER(b, kz) - p->permuted.z,
         CORNER(c, kx) - p->permuted.x, CORNER(c, ky) - p->permuted.y, CORNER(c, kz) - p->permuted.z,
@@ -172,14 +172,15 @@ INLINE uint rays_near_triangle(global const uchar *block, uint i, uint near, con
 // Bits of the `rays` that hit triangle i of a block in (0, limit], as intersect_triangle_block decides for one.
 INLINE uint rays_at_triangle(global const uchar *block, uint i, uint number, uint rays, const Packet *p, const RayGroup *g,
                              Float limit, Float *t, Float *u, Float *v) {
-    Sheared_lanes c = corners_in_lanes(block, i, p);
-    uint inside = rays & lane_bits(shear_lanes(&c, p->shear_x, p->shear_y));
+    Areas_lanes w;
+    Corners_lanes c = corners_in_lanes(block, i, p);
+    uint inside = rays & lane_bits(shear_lanes(&c, &w, p->shear_x, p->shear_y));
     if (inside == 0u) return 0u;
     inside &= lane_bits(*(const UInt *)g->from != (UInt)TRIANGLE_NUMBERS(number));
-    Float inverse = 1.0f / c.sum, depth = depth_lanes(&c, p->shear_z);
+    Float inverse = 1.0f / w.sum, depth = depth_lanes(&c, &w, p->shear_z);
     *t = depth * inverse;
-    *u = c.wb * inverse;
-    *v = c.wc * inverse;
+    *u = w.wb * inverse;
+    *v = w.wc * inverse;
     inside &= lane_bits(*t <= limit);
     if (inside == 0u) return 0u;
     Int near = unsure_lanes(&c, depth, p->shear_z);

@@ -70,19 +70,20 @@ INLINE uint hits_near_origin(global const uchar *block, uint near, const Ray *r,
 INLINE uint intersect_triangle_block(global const uchar *block, const RayShear *s, const Ray *r, float limit, float8 *t, float8 *u,
                                      float8 *v) {
     global const uchar *b1 = block + BLOCK_VERTEX_BYTES, *b2 = block + 2u * BLOCK_VERTEX_BYTES;
-    Sheared8 c = {
+    Corners8 c = {
         row8(block, s->kx) - s->ox, row8(block, s->ky) - s->oy, row8(block, s->kz) - s->oz,
         row8(b1, s->kx) - s->ox,    row8(b1, s->ky) - s->oy,    row8(b1, s->kz) - s->oz,
         row8(b2, s->kx) - s->ox,    row8(b2, s->ky) - s->oy,    row8(b2, s->kz) - s->oz,
     };
+    Areas8 w;
     // Most blocks end here, before the division.
-    uint inside = lane_bits8(shear8(&c, s->sx, s->sy));
+    uint inside = lane_bits8(shear8(&c, &w, s->sx, s->sy));
     if (LIKELY(inside == 0u)) return 0u;
     inside &= lane_bits8(TRIANGLE_NUMBERS(*(global const uint8 *)(block + BLOCK_PRIMITIVE_BYTES)) != r->from);
-    float8 inverse = 1.0f / c.sum, depth = depth8(&c, s->sz);
+    float8 inverse = 1.0f / w.sum, depth = depth8(&c, &w, s->sz);
     *t = depth * inverse;
-    *u = c.wb * inverse;
-    *v = c.wc * inverse;
+    *u = w.wb * inverse;
+    *v = w.wc * inverse;
     inside &= lane_bits8(*t <= limit);
     if (LIKELY(inside == 0u)) return 0u;
     int8 near = unsure8(&c, depth, s->sz);
