@@ -75,7 +75,10 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_UVS", f.uvs);
+    out.define("HAS_SECOND_UVS", f.second_uvs);
     out.define("HAS_VERTEX_COLORS", f.vertex_colors);
+    out.define("HAS_VERTEX_OPACITY", f.vertex_opacity);
+    out.define("HAS_UNSAMPLED_EMITTERS", f.unsampled_emitters);
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
@@ -87,7 +90,9 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_NESTING", f.material_levels > 0);
     out.define_unsigned("MATERIAL_LEVELS", f.material_levels);
     out.define("HAS_TRANSMISSION", f.transmission);
+    out.define("HAS_LAYERS", has_bit(f.lobes, LOBE_LAYERED_METALLIC_ROUGHNESS));
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
+    out.define("HAS_SIDES_BY_WINDING", f.sides_by_winding);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
@@ -107,6 +112,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
     out.define("HAS_LIGHT_TREE", f.light_tree);
+    out.define("HAS_LIGHT_RANGE", f.light_range);
+    out.define("HAS_SMOOTH_CONES", f.smooth_cones);
     out.define("HAS_FEW_TRIANGLES", f.few_triangles);
     if (!f.few_triangles) out.define_unsigned("BVH_STACK", f.bvh_stack);
 }
@@ -186,7 +193,10 @@ std::vector<std::string> FeatureSet::names() const {
     add(textured_emitters, "textured_emitters");
     add(smooth_normals, "smooth_normals");
     add(uvs, "uvs");
+    add(second_uvs, "second_uvs");
     add(vertex_colors, "vertex_colors");
+    add(vertex_opacity, "vertex_opacity");
+    add(unsampled_emitters, "unsampled_emitters");
     add(analytic, "analytic_shapes");
     add(instances, "instances");
     add(anisotropy, "anisotropy");

@@ -32,7 +32,10 @@ struct FeatureSet {
     bool textured_emitters = false;
     bool smooth_normals = false;
     bool uvs = false;
+    bool second_uvs = false;         // some texture uses the second set of coordinates
     bool vertex_colors = false;
+    bool vertex_opacity = false;     // some vertices have an opacity of their own
+    bool unsampled_emitters = false; // some emission is found by paths alone
     bool analytic = false;
     bool instances = false;
     bool anisotropy = false;
@@ -43,6 +46,7 @@ struct FeatureSet {
     int material_levels = 0;    // of materials that hold others, at the most
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material
+    bool sides_by_winding = false;
     bool lobe_choice = false;  // the class of lobes depends on more than the shape
     bool mixture = false;      // some material is both glossy and diffuse
     bool ggx = false;
@@ -52,6 +56,8 @@ struct FeatureSet {
     bool error_estimate = false; // the film is kept in two independent halves
     bool masks = false;            // rays pass some primitives, by their opacity
     bool veiled_emitters = false;  // paths go on behind some emitters
+    bool light_range = false;  // some point or spot light reaches only so far
+    bool smooth_cones = false;
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack

@@ -7,6 +7,7 @@
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "render/presence.h"
+#include "render/vertex_coordinates.h"
 #include "scene/fault.h"
 #include "tables/filter_table.h"
 
@@ -90,11 +91,12 @@ private:
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
-        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps);
+        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.vertex_opacity);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
         out_.uvs = {};
-        for (DeviceShape& shape : out_.shapes) shape.first_uv = WAVELOBE_NONE;
+        for (DeviceShape& shape : out_.shapes) shape.first_uv = shape.first_second_uv = WAVELOBE_NONE;
+        for (DeviceOpacity& opacity : out_.opacities) opacity.first_uv = WAVELOBE_NONE;
     }
 
     bool emits(const Shape& shape) const {
@@ -103,7 +105,7 @@ private:
 
     // What is nowhere and does not shine is left out.
     bool is_there(const Shape& shape) {
-        return emits(shape) || presence_.find(shape.material.opacity) != Presence::absent;
+        return (emits(shape) && shape.emitter->sampled) || presence_.find(shape) != Presence::absent;
     }
 
     // The record of a shape with its materials and its opacity; geometry is added by the caller.
@@ -113,28 +115,32 @@ private:
         s.back_material = materials_.add(shape.material.back);
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
-        s.first_uv = WAVELOBE_NONE;
+        s.first_uv = s.first_second_uv = WAVELOBE_NONE;
         s.first_color = WAVELOBE_NONE;
         s.first_light = WAVELOBE_NONE;
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
         const std::uint32_t back = classes(s.back_material);
         s.flags = front | back;
+        if (shape.material.sided_by_winding) s.flags |= SHAPE_SIDED_BY_WINDING;
         FeatureSet& f = out_.features;
+        f.sides_by_winding = f.sides_by_winding || shape.material.sided_by_winding;
         f.unlike_sides = f.unlike_sides || s.back_material != s.front_material;
         // A black side ends a path in any queue; two sides of different classes must be told apart before.
         f.lobe_choice = f.lobe_choice || (front != 0 && back != 0 && front != back);
         if (emits(shape)) {
-            s.flags |= SHAPE_EMITS;
+            s.flags |= emitter_flags(*shape.emitter);
             s.first_light = static_cast<std::uint32_t>(out_.lights.size());
+            f.unsampled_emitters = f.unsampled_emitters || (s.flags & (SHAPE_UNSAMPLED | SHAPE_EMITS_BEHIND)) != 0;
             f.textured_emitters = f.textured_emitters || shape.emitter->radiance.texture != nullptr;
         }
-        if (presence_.find(shape.material.opacity) == Presence::whole) {
-            out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F});
+        if (presence_.find(shape) == Presence::whole) {
+            out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F, WAVELOBE_NONE, WAVELOBE_NONE});
         } else {
             out_.opacities.push_back(materials_.opacity(shape.material.opacity));
-            s.flags |= emits(shape) ? SHAPE_VEILED : SHAPE_MASKED;
-            (emits(shape) ? f.veiled_emitters : f.masks) = true;
+            const bool veiled = emits(shape) && shape.emitter->sampled;
+            s.flags |= veiled ? SHAPE_VEILED : SHAPE_MASKED;
+            (veiled ? f.veiled_emitters : f.masks) = true;
         }
         return s;
     }
@@ -152,12 +158,12 @@ private:
         if (mesh.triangles.empty()) return;
         DeviceShape s = device_shape(shape);
         if (!mesh.normals.empty()) {
-            s.first_normal = offset(out_.normals.size(), shape);
+            s.first_normal = vertex_offset(out_.normals.size(), shape);
             out_.features.smooth_normals = true;
         }
-        if (!mesh.uvs.empty()) s.first_uv = offset(out_.uvs.size(), shape);
+        add_vertex_coordinates(shape, mesh, s, out_);
         if (!mesh.colors.empty()) {
-            s.first_color = offset(out_.colors.size(), shape);
+            s.first_color = vertex_offset(out_.colors.size(), shape);
             out_.features.vertex_colors = true;
         }
         const auto index = static_cast<std::uint32_t>(out_.shapes.size());
@@ -167,25 +173,18 @@ private:
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = t[corner];
                 if (!mesh.normals.empty()) append(out_.normals, mesh.normals[vertex]);
-                if (!mesh.uvs.empty()) append(out_.uvs, mesh.uvs[vertex]);
                 if (!mesh.colors.empty()) append(out_.colors, mesh.colors[vertex]);
             }
         }
         if (emits(shape)) {
-            lights_.add_mesh(*shape.emitter, mesh);
+            if (shape.emitter->sampled) lights_.add_mesh(*shape.emitter, mesh);
+            else lights_.add_unsampled(*shape.emitter, out_.shapes.size());
             if (mesh.parallelogram) s.triangles_per_light = 2;
         }
         out_.shapes.push_back(s);
     }
 
     static void append(std::vector<float>& out, const glm::vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); }
-    static void append(std::vector<float>& out, const glm::vec2& v) { out.insert(out.end(), {v.x, v.y}); }
-
-    // Kernels gather by signed 32-bit offsets.
-    static std::uint32_t offset(std::size_t value, const Shape& shape) {
-        if (value > 0x7fffffffU) throw InputError(Fault{"", 0, 0, shape.name, "the scene has more vertex data than 32-bit offsets reach", "reduce the meshes"});
-        return static_cast<std::uint32_t>(value);
-    }
 
     void add_analytic(const Shape& shape, const AnalyticShape& analytic);
 
@@ -308,7 +307,7 @@ void Flattener::set_parameters() {
     p.window_height = static_cast<std::uint32_t>(film.crop_height);
     p.max_depth = scene_.integrator.max_depth < 0 ? 0x7fffffffU : static_cast<std::uint32_t>(scene_.integrator.max_depth);
     p.rr_depth = static_cast<std::uint32_t>(std::max(scene_.integrator.rr_depth, 1));
-    p.light_count = static_cast<std::uint32_t>(out_.lights.size());
+    p.light_count = lights_.count();
     p.finite_light_count = lights_.finite_count();
     p.triangle_count = static_cast<std::uint32_t>(out_.triangles.size());
 }

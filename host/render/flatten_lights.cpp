@@ -57,17 +57,21 @@ void LightFlattener::add_placed_light(const Light& light, double power, const Li
 }
 
 void LightFlattener::add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh) {
-    const TexturedRgb radiance = materials_.rgb(emitter.radiance);
+    const MeshRadiance radiance{materials_.rgb(emitter.radiance), mean_luminance(emitter.radiance), uvs_of(emitter, mesh)};
     if (mesh.parallelogram) {
-        add_planar(emitter, mesh, LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
+        add_planar(mesh, LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
         return;
     }
-    for (const glm::uvec3& t : mesh.triangles) add_planar(emitter, mesh, LIGHT_TRIANGLE, radiance, t);
+    for (const glm::uvec3& t : mesh.triangles) add_planar(mesh, LIGHT_TRIANGLE, radiance, t);
 }
 
-void LightFlattener::add_planar(const AreaEmitter& emitter, const TriangleMesh& mesh, LightIndex kind,
-                                const TexturedRgb& radiance, const glm::uvec3& t) {
-    Light light = light_of(kind, radiance);
+const std::vector<glm::vec2>& LightFlattener::uvs_of(const AreaEmitter& emitter, const TriangleMesh& mesh) {
+    const auto& texture = emitter.radiance.texture;
+    return texture && texture->second_uvs && !mesh.second_uvs.empty() ? mesh.second_uvs : mesh.uvs;
+}
+
+void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t) {
+    Light light = light_of(kind, radiance.value);
     const glm::vec3 p = mesh.positions[t.x];
     const glm::vec3 e1 = mesh.positions[t.y] - p;
     const glm::vec3 e2 = mesh.positions[t.z] - p;
@@ -80,7 +84,7 @@ void LightFlattener::add_planar(const AreaEmitter& emitter, const TriangleMesh& 
     light.inverse_area = static_cast<float>(1.0 / area);
     const glm::vec2 barycentric[3] = {{0, 0}, {1, 0}, {0, 1}};
     for (int i = 0; i < 3; ++i) {
-        const glm::vec2 uv = mesh.uvs.empty() ? barycentric[i] : mesh.uvs[t[i]];
+        const glm::vec2 uv = radiance.uvs.empty() ? barycentric[i] : radiance.uvs[t[i]];
         light.uv[2 * i] = uv.x;
         light.uv[2 * i + 1] = uv.y;
     }
@@ -88,8 +92,8 @@ void LightFlattener::add_planar(const AreaEmitter& emitter, const TriangleMesh& 
     if (kind == LIGHT_PARALLELOGRAM) bounds = bounds_about({p, p + e1, p + e2, p + e1 + e2});
     bounds.axis = glm::normalize(cross);
     bounds.emission = 0.5 * std::numbers::pi;
-    bounds.intensity = area * mean_luminance(emitter.radiance);
-    add_placed_light(light, area_power(emitter, area), bounds);
+    bounds.intensity = area * radiance.mean;
+    add_placed_light(light, std::numbers::pi * area * radiance.mean, bounds);
 }
 
 void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
@@ -119,13 +123,24 @@ bool LightFlattener::has_place(const Emitter& emitter) {
     return std::holds_alternative<PointEmitter>(emitter) || std::holds_alternative<SpotEmitter>(emitter);
 }
 
+void LightFlattener::add_unsampled(const AreaEmitter& emitter, std::size_t shape) {
+    unsampled_.emplace_back(shape, materials_.rgb(emitter.radiance));
+    out_.features.light_kinds |= 1U << LIGHT_TRIANGLE;
+}
+
 void LightFlattener::finish() {
+    // The stages of lights want one.
+    if (powers_.empty() && !unsampled_.empty()) add(PointEmitter{glm::vec3(0.0F), Rgb(0.0F)}, 0.0);
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
     if (bounds_.size() >= least_tree_lights) {
         build_tree();
     } else {
         build_alias();
+    }
+    for (const auto& [shape, radiance] : unsampled_) {
+        out_.shapes[shape].first_light = static_cast<std::uint32_t>(out_.lights.size());
+        out_.lights.push_back(light_of(LIGHT_TRIANGLE, radiance));
     }
 }
 
@@ -185,9 +200,15 @@ void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius)
     add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
 }
 
+void LightFlattener::set_range(Light& light, float range) {
+    light.inverse_range = range > 0.0F ? 1.0F / range : 0.0F;
+    out_.features.light_range = out_.features.light_range || range > 0.0F;
+}
+
 void LightFlattener::add(const PointEmitter& e, double power) {
     Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(e.position);
+    set_range(light, e.range);
     LightBounds bounds = bounds_about({e.position});
     bounds.spread = std::numbers::pi;
     bounds.emission = 0.5 * std::numbers::pi;
@@ -201,6 +222,9 @@ void LightFlattener::add(const SpotEmitter& e, double power) {
     light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
     light.cos_cutoff = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.cutoff_degrees))));
     light.cos_beam = static_cast<float>(std::cos(glm::radians(static_cast<double>(e.beam_width_degrees))));
+    light.smooth_cone = e.smooth ? 1 : 0;
+    out_.features.smooth_cones = out_.features.smooth_cones || e.smooth;
+    set_range(light, e.range);
     LightBounds bounds = bounds_about({glm::vec3(e.to_world[3])});
     bounds.axis = glm::normalize(glm::dvec3(e.to_world[2]));
     bounds.emission = glm::radians(static_cast<double>(e.cutoff_degrees));

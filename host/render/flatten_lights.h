@@ -8,6 +8,15 @@ namespace wavelobe {
 
 Affine affine(const glm::mat4& m);
 
+// SHAPE_x bits of a shape that emits.
+inline std::uint32_t emitter_flags(const AreaEmitter& emitter) {
+    std::uint32_t flags = SHAPE_EMITS;
+    if (!emitter.sampled) flags |= SHAPE_UNSAMPLED;
+    if (emitter.both_sides) flags |= SHAPE_EMITS_BEHIND;
+    if (emitter.colored && !emitter.sampled) flags |= SHAPE_EMITS_COLORED;
+    return flags;
+}
+
 // Fills lights and the environment of a device scene, and the table that chooses among them.
 class LightFlattener {
 public:
@@ -15,6 +24,8 @@ public:
 
     // A light for each triangle, or one for a parallelogram.
     void add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh);
+    // What shines and is not sampled: a record of radiance behind the lights, for out.shapes[shape].
+    void add_unsampled(const AreaEmitter& emitter, std::size_t shape);
     void add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
                       const Bounds& bounds);
     // Those without a shape; `radius` is that of the scene's bounding sphere. Black ones are left out.
@@ -25,12 +36,20 @@ public:
     static bool has_place(const Emitter& emitter);
     // How many have one; they come first if add_emitter was called for them first.
     std::uint32_t finite_count() const { return static_cast<std::uint32_t>(bounds_.size()); }
+    std::uint32_t count() const { return static_cast<std::uint32_t>(powers_.size()); }
 
 private:
-    void add_planar(const AreaEmitter& emitter, const TriangleMesh& mesh, LightIndex kind, const TexturedRgb& radiance,
-                    const glm::uvec3& t);
+    // What all triangles of a mesh have in common.
+    struct MeshRadiance {
+        TexturedRgb value;
+        double mean;  // luminance
+        const std::vector<glm::vec2>& uvs;
+    };
+    static const std::vector<glm::vec2>& uvs_of(const AreaEmitter& emitter, const TriangleMesh& mesh);
+    void add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t);
     void add_light(const Light& light, double power);
     void add_placed_light(const Light& light, double power, const LightBounds& bounds);
+    void set_range(Light& light, float range);
     void build_tree();
     void build_alias();
     void add_environment_map(const EnvironmentMap& e, double radius);
@@ -43,6 +62,7 @@ private:
     DeviceScene& out_;
     std::vector<double> powers_;
     std::vector<LightBounds> bounds_;  // of the lights with a place
+    std::vector<std::pair<std::size_t, TexturedRgb>> unsampled_;  // shapes and their radiance
 };
 
 }  // namespace wavelobe

@@ -77,6 +77,10 @@ std::uint32_t MaterialFlattener::texture(const std::shared_ptr<const Texture>& t
         t.width = static_cast<std::uint32_t>(bitmap.width);
         t.height = static_cast<std::uint32_t>(bitmap.height);
     }
+    if (texture->second_uvs) {
+        t.kind |= TEXTURE_SECOND_UVS;
+        out_.features.second_uvs = true;
+    }
     out_.textures.push_back(t);
     return found->second;
 }
@@ -174,20 +178,6 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
     out.exponent = scalar(m.exponent);
 }
 
-void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
-    out.lobes = bit(LOBE_METALLIC_ROUGHNESS);
-    // A metal throughout has no base.
-    if (m.metallic.texture || m.metallic.value.x < 1.0F) out.lobes |= bit(LOBE_METALLIC_ROUGHNESS_BASE);
-    out_.features.ggx = true;
-    out.diffuse = rgb(m.base_color);
-    out.metallic = scalar(m.metallic);
-    out.alpha_u = scalar(m.roughness);
-    const double amplitude = m.ior == 0.0F ? 1.0 : (1.0 - static_cast<double>(m.ior)) / (1.0 + static_cast<double>(m.ior));
-    const Rgb reflectance = glm::min(static_cast<float>(amplitude * amplitude) * m.specular_color, Rgb(1.0F));
-    out.specular.value = packed(reflectance * m.specular);
-    out.specular_weight = m.specular;
-}
-
 void MaterialFlattener::nest(DeviceNesting& out, std::uint32_t kind, const NestedMaterial& first, const NestedMaterial& second) {
     out.flags = kind;
     out.inner[0] = add(first.get());
@@ -235,6 +225,33 @@ std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
     return static_cast<std::uint32_t>(first);
 }
 
+void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
+    out_.features.ggx = true;
+    out.diffuse = rgb(m.base_color);
+    out.metallic = scalar(m.metallic);
+    out.alpha_u = scalar(m.roughness);
+    const double amplitude = m.ior == 0.0F ? 1.0 : (1.0 - static_cast<double>(m.ior)) / (1.0 + static_cast<double>(m.ior));
+    const Rgb reflectance = static_cast<float>(amplitude * amplitude) * m.specular_color.value;
+    // A metal throughout has no base.
+    const bool has_base = m.metallic.texture || m.metallic.value.x < 1.0F;
+    const bool transmits = has_base && m.transmission.value.x > 0.0F;
+    if (transmits || m.clearcoat.value.x > 0.0F || m.specular.texture || m.specular_color.texture) {
+        out.lobes = bit(LOBE_LAYERED_METALLIC_ROUGHNESS);
+        if (has_base) out.lobes |= bit(LOBE_LAYERED_METALLIC_ROUGHNESS_BASE);
+        if (transmits) out.flags |= MATERIAL_TRANSMISSIVE | MATERIAL_THIN;
+        out.eta.x = 1.0F;
+        Parameter f0 = m.specular_color;
+        f0.value = reflectance;
+        out.extension = add_extension(MetallicRoughnessLayers{scalar(m.clearcoat), scalar(m.clearcoat_roughness), scalar(m.transmission),
+                                                              scalar(m.specular), rgb(f0)});
+        return;
+    }
+    out.lobes = bit(LOBE_METALLIC_ROUGHNESS);
+    if (has_base) out.lobes |= bit(LOBE_METALLIC_ROUGHNESS_BASE);
+    out.specular.value = packed(glm::min(reflectance, Rgb(1.0F)) * m.specular.value.x);
+    out.specular_weight = m.specular.value.x;
+}
+
 std::uint32_t MaterialFlattener::add(int material) {
     return add(material < 0 ? nullptr : &scene_.materials[static_cast<std::size_t>(material)]);
 }
@@ -275,7 +292,8 @@ std::uint32_t MaterialFlattener::add(const Material* material) {
 }
 
 DeviceOpacity MaterialFlattener::opacity(const Opacity& opacity) {
-    return {scalar(opacity.value), opacity.texture_scale, opacity.cutoff ? std::max(*opacity.cutoff, 0.0F) : -1.0F};
+    return {scalar(opacity.value), opacity.texture_scale, opacity.cutoff ? std::max(*opacity.cutoff, 0.0F) : -1.0F, WAVELOBE_NONE,
+            WAVELOBE_NONE};
 }
 
 std::uint32_t MaterialFlattener::lobes(std::uint32_t device_material) const {

@@ -24,11 +24,16 @@ PresenceFinder::Range PresenceFinder::texture_range(const Texture& texture) {
     return range;
 }
 
-Presence PresenceFinder::find(const Opacity& opacity) {
+Presence PresenceFinder::find(const Shape& shape) {
+    const Opacity& opacity = shape.material.opacity;
     Range range{opacity.value.value.r, opacity.value.value.r};
     if (opacity.value.texture) {
         range = texture_range(*opacity.value.texture);
         range = {range.low * opacity.texture_scale, range.high * opacity.texture_scale};
+    }
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry); mesh != nullptr && !mesh->alphas.empty()) {
+        const auto [low, high] = std::minmax_element(mesh->alphas.begin(), mesh->alphas.end());
+        range = {range.low * *low, range.high * *high};
     }
     // Interpolation between equal texels may round: opaque but for a millionth is opaque.
     constexpr float rounding = 8.0F * std::numeric_limits<float>::epsilon();

@@ -9,10 +9,10 @@ namespace wavelobe {
 
 enum class Presence { absent, partial, whole };
 
-// Of a surface of that opacity, wherever on it. Remembers what it has found of textures.
+// Of a shape, wherever on it. Remembers what it has found of textures.
 class PresenceFinder {
 public:
-    Presence find(const Opacity& opacity);
+    Presence find(const Shape& shape);
 
 private:
     struct Range {

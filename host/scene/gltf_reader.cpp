@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "scene/gltf/animation.h"
+#include "scene/gltf/backs.h"
 #include "scene/gltf/cameras.h"
 #include "scene/gltf/environment.h"
 #include "scene/gltf/instancing.h"
@@ -41,6 +42,7 @@ public:
         add_punctual_lights(document_, tree_, scene_);
         place_camera(document_, tree_, {options_.width, options_.height}, scene_);
         if (!document_.faults.empty()) document_.faults.raise();
+        clear_backs(scene_, single_sided_);
         add_light();
         if (dropped_ > 0) document_.warn(fmt::format("{}: {} triangles without area are left out", document_.file, dropped_));
         scene_.warnings = document_.warnings;
@@ -53,6 +55,7 @@ private:
         for (const Element& node : document_.nodes) {
             node.index("mesh", document_.meshes.size(), "meshes");
             node.index("skin", document_.skins.size(), "skins");
+            if (const auto mesh = node.index("mesh", document_.meshes.size(), "meshes")) meshes_.check_weights(*mesh, node);
         }
         for (std::size_t skin = 0; skin < document_.skins.size(); ++skin) joint_matrices(document_, accessors_, skin, tree_);
         for (const std::size_t node : tree_.shown) {
@@ -97,17 +100,34 @@ private:
         options.flip_normals = mirrored && options.face_normals;
         const Appearance& appearance = materials_.appearance(primitive.material);
         MeshSource source = primitive.mesh;
-        if (appearance.uv_set == 1 && !primitive.second_uvs.empty()) source.uvs = primitive.second_uvs;
+        const auto coordinates = [&](std::size_t slot) -> std::vector<glm::vec2> {
+            const bool used = slot < appearance.uv_sets.size();
+            const std::size_t set = used ? static_cast<std::size_t>(appearance.uv_sets[slot]) : slot;
+            if (set < primitive.uv_sets.size() && (used || slot == 0)) return primitive.uv_sets[set];
+            if (!used) return {};
+            document_.faults.add(primitive.path, fmt::format("its material looks up TEXCOORD_{}, which it does not have", set));
+            return {};
+        };
+        source.uvs = coordinates(0);
         PreparedMesh prepared = prepare_mesh(std::move(source), options);
         const std::string name = document_.nodes[node].text("name", document_.meshes[mesh].text("name", fmt::format("mesh {}", mesh)));
         dropped_ += prepared.dropped;
         if (prepared.mesh.triangles.empty()) return;
-        for (const glm::vec4& color : primitive.colors) prepared.mesh.colors.emplace_back(color);
+        prepared.mesh.second_uvs = coordinates(1);
+        add_colors(primitive, appearance, prepared.mesh);
+        if (appearance.single_sided) single_sided_.push_back(scene_.shapes.size());
         Shape& shape = scene_.shapes.emplace_back();
         shape.geometry = std::move(prepared.mesh);
         shape.material = appearance.surface;
         shape.emitter = appearance.emitter;
         shape.name = name;
+    }
+
+    static void add_colors(const Primitive& primitive, const Appearance& appearance, TriangleMesh& mesh) {
+        for (const glm::vec4& color : primitive.colors) mesh.colors.emplace_back(color);
+        if (!appearance.blends) return;
+        for (const glm::vec4& color : primitive.colors) mesh.alphas.push_back(color.a);
+        if (std::all_of(mesh.alphas.begin(), mesh.alphas.end(), [](float a) { return a == 1.0F; })) mesh.alphas.clear();
     }
 
     void add_light() {
@@ -123,6 +143,7 @@ private:
     NodeTree tree_;
     Meshes meshes_;
     Materials materials_;
+    std::vector<std::size_t> single_sided_;  // shapes
     std::size_t dropped_ = 0;  // triangles without area
 };
 

@@ -45,6 +45,7 @@ struct Texture {
     std::variant<Bitmap, Checkerboard> source;
     glm::mat3 to_uv{1.0F};  // applied to (u, v, 1) before the look-up
     std::string name;
+    bool second_uvs = false;  // looked up at TriangleMesh::second_uvs
 };
 
 // A material parameter: a constant, or a texture over the surface's (u, v).
@@ -124,14 +125,17 @@ struct Phong {
 };
 
 // glTF 2.0, appendix B: a dielectric of index 1.5 over a diffuse base, mixed with a metal of the base colour. Parameters are
-// products of value and texture.
+// products of value and texture. Below the surface is what is above it: light that passes goes through a thin wall.
 struct MetallicRoughness {
     Parameter base_color{Rgb{1.0F}, nullptr};
     Parameter metallic{Rgb{1.0F}, nullptr};
     Parameter roughness{Rgb{1.0F}, nullptr};  // square root of the microfacets' alpha
     float ior = 1.5F;             // 0: infinite
-    float specular = 1.0F;        // KHR_materials_specular: scales the dielectric's reflection
-    Rgb specular_color{1.0F};     // ... at normal incidence
+    Parameter specular{Rgb{1.0F}, nullptr};        // KHR_materials_specular: scales the dielectric's reflection
+    Parameter specular_color{Rgb{1.0F}, nullptr};  // ... at normal incidence
+    Parameter clearcoat{Rgb{0.0F}, nullptr};       // share of the surface under a clear coat of index 1.5
+    Parameter clearcoat_roughness{Rgb{0.0F}, nullptr};
+    Parameter transmission{Rgb{0.0F}, nullptr};    // share of the base that lets light through, tinted by its colour
 };
 
 struct Material;
@@ -195,6 +199,7 @@ struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
     Opacity opacity{};
+    bool sided_by_winding = false;  // which side is seen follows from the winding of triangles, otherwise from shading normals
 };
 
 // ---- shapes --------------------------------------------------------------------------------------
@@ -206,7 +211,9 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<glm::vec2> uvs;
+    std::vector<glm::vec2> second_uvs;  // for textures that ask for them; empty: `uvs` serve
     std::vector<glm::vec3> colors;  // linear, empty or one a vertex; they scale MetallicRoughness::base_color
+    std::vector<float> alphas;      // empty or one a vertex; they scale the opacity, before its cutoff
     std::vector<glm::uvec3> triangles;
     bool parallelogram = false;  // exactly two triangles (0,1,2) (0,2,3) forming a parallelogram: lit as one
 };
@@ -220,6 +227,9 @@ struct AnalyticShape {
 
 struct AreaEmitter {
     Parameter radiance;  // W / (m^2 sr), emitted on the side of the normal
+    bool both_sides = false;  // meshes: and on the other, where light is never sampled but found by paths
+    bool sampled = true;      // meshes: false leaves both to paths that hit it; its opacity then lessens what it emits
+    bool colored = false;     // unsampled: scaled by the colours of the vertices
 };
 
 struct Shape {
@@ -261,6 +271,7 @@ struct EnvironmentMap {
 struct PointEmitter {
     glm::vec3 position{0.0F};
     Rgb intensity{1.0F};  // W / sr
+    float range = 0.0F;   // scene units from which on it gives no light, and towards which less; 0: none
 };
 
 struct SpotEmitter {
@@ -268,6 +279,8 @@ struct SpotEmitter {
     Rgb intensity{1.0F};
     float cutoff_degrees = 20.0F;
     float beam_width_degrees = 15.0F;
+    float range = 0.0F;
+    bool smooth = false;  // from beam to cutoff the square of a ramp over the cosine, otherwise a ramp over the angle
 };
 
 struct DirectionalEmitter {

@@ -29,6 +29,11 @@ double spot_solid_angle(double beam, double cutoff) {
     return 2.0 * pi * (1.0 - (std::sin(cutoff) - std::sin(beam)) / (cutoff - beam));
 }
 
+// The same with the smooth fall of glTF: the square of a ramp over the cosine.
+double smooth_spot_solid_angle(double beam, double cutoff) {
+    return 2.0 * pi * (1.0 - std::cos(beam) + (std::cos(beam) - std::cos(cutoff)) / 3.0);
+}
+
 // Flux through the disk that the scene's bounding sphere casts on a plane, for an irradiance of one.
 double disk_area(double scene_radius) { return pi * scene_radius * scene_radius; }
 
@@ -44,9 +49,9 @@ struct Power {
     }
     double operator()(const PointEmitter& e) const { return 4.0 * pi * luminance(e.intensity); }
     double operator()(const SpotEmitter& e) const {
-        const double degree = pi / 180.0;
-        return luminance(e.intensity) * spot_solid_angle(static_cast<double>(e.beam_width_degrees) * degree,
-                                                         static_cast<double>(e.cutoff_degrees) * degree);
+        const double beam = glm::radians(static_cast<double>(e.beam_width_degrees));
+        const double cutoff = glm::radians(static_cast<double>(e.cutoff_degrees));
+        return luminance(e.intensity) * (e.smooth ? smooth_spot_solid_angle(beam, cutoff) : spot_solid_angle(beam, cutoff));
     }
     double operator()(const DirectionalEmitter& e) const { return luminance(e.irradiance) * disk_area(scene_radius); }
 };

@@ -25,6 +25,10 @@ INLINE MaterialInput material_input(const Surface *surface, global const struct 
     in.material = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
     in.u = surface->u;
     in.v = surface->v;
+#if HAS_SECOND_UVS
+    in.second_u = surface->second_u;
+    in.second_v = surface->second_v;
+#endif
 #if HAS_VERTEX_COLORS
     in.color = surface->color;
 #endif

@@ -154,15 +154,33 @@ INLINE void texture_gradient(TextureBuffers b, UInt i, Float u, Float v, Float *
 #undef TO_UV
 }
 
+#if HAS_SECOND_UVS
+INLINE Int uses_second_uvs(TextureBuffers b, UInt i) {
+    return (as_UInt(texture_field(b, i, kind)) & (UInt)TEXTURE_SECOND_UVS) != (UInt)0u;
+}
+#define CHOOSE_UVS(b, i, in)                                 \
+    {                                                        \
+        Int second = uses_second_uvs(b, i);                  \
+        (in).u = SELECT(second, (in).second_u, (in).u);      \
+        (in).v = SELECT(second, (in).second_v, (in).v);      \
+    }
+#else
+#define CHOOSE_UVS(b, i, in)
+#endif
+
+// Lanes without a texture look up the first.
 INLINE Rgb looked_up_rgb(MaterialInput in, UInt texture, Int textured) {
     TextureBuffers b = {in.textures, in.texels};
-    // Lanes without a texture look up the first.
-    return texture_rgb(b, SELECT(textured, texture, (UInt)0u), in.u, in.v);
+    UInt i = SELECT(textured, texture, (UInt)0u);
+    CHOOSE_UVS(b, i, in)
+    return texture_rgb(b, i, in.u, in.v);
 }
 
 INLINE Float looked_up_float(MaterialInput in, UInt texture, Int textured) {
     TextureBuffers b = {in.textures, in.texels};
-    return texture_float(b, SELECT(textured, texture, (UInt)0u), in.u, in.v);
+    UInt i = SELECT(textured, texture, (UInt)0u);
+    CHOOSE_UVS(b, i, in)
+    return texture_float(b, i, in.u, in.v);
 }
 
 // Parameters of materials, textured or not; `offset` is that of the parameter in the record.
@@ -192,5 +210,7 @@ INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
 #define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 0)
 #define load_scaled_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 1)
 #define load_scaled_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 1)
+#define load_extension_rgb(in, type, field) parameter_rgb(in, WORD_OFFSET(type, field), 1)
+#define load_extension_float(in, type, field) parameter_float(in, WORD_OFFSET(type, field), 1)
 
 #endif

@@ -47,8 +47,8 @@ typedef struct {
     Int delta;
 } LightSample;
 
-// A field of the lane's light record.  With one light it is the same for all lanes: no gather.
-#if LIGHT_COUNT == 1
+// A field of the lane's light record.  With one record it is the same for all lanes: no gather.
+#if LIGHT_COUNT == 1 && !HAS_UNSAMPLED_EMITTERS
 #define light_field(in, name) ((Float)(*((global const float *)(in).lights + WORD_OFFSET(Light, name))))
 #define light_word(in, offset) ((Float)(*((global const float *)(in).lights + (offset))))
 #else

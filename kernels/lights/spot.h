@@ -1,9 +1,15 @@
-// A point that shines in a cone about edge1: full intensity up to the beam's angle, then falling linearly with the angle
-// to zero at the cutoff.  Fields: radiance (intensity on the axis, W / sr), position, edge1, cos_beam, cos_cutoff.
+// A point that shines in a cone about edge1: full intensity up to the beam's angle, then falling to zero at the cutoff:
+// linearly with the angle, or smoothly.  Fields: radiance (intensity on the axis, W / sr), position, edge1, cos_beam,
+// cos_cutoff, smooth_cone, inverse_range.
 #ifndef WAVELOBE_LIGHTS_SPOT_H
 #define WAVELOBE_LIGHTS_SPOT_H
 
 #include "lights/point.h"
+
+// Whether some spot of the scene falls smoothly.
+#ifndef HAS_SMOOTH_CONES
+#define HAS_SMOOTH_CONES 1
+#endif
 
 // Share of the axial intensity that leaves along `direction`.
 INLINE Float spot_falloff(LightInput in, Vec3 direction) {
@@ -15,13 +21,19 @@ INLINE Float spot_falloff(LightInput in, Vec3 direction) {
     Float beam = lane_acos(cos_beam), cutoff = lane_acos(cos_cutoff);
     Float ramp = (cutoff - angle) / (cutoff - beam);
     ramp = LESSER(GREATER(ramp, ZERO), ONE);
+#if HAS_SMOOTH_CONES
+    // Khronos Group 2018, "KHR_lights_punctual", section "Inner and Outer Cone Angles".
+    Float linear_cosine = LESSER(GREATER((cosine - cos_cutoff) / (cos_beam - cos_cutoff), ZERO), ONE);
+    Int smooth = as_UInt(light_field(in, smooth_cone)) != (UInt)0u;
+    ramp = SELECT(smooth, linear_cosine * linear_cosine, ramp);
+#endif
     return SELECT(cosine >= cos_beam, ONE, SELECT(cosine > cos_cutoff, ramp, ZERO));
 }
 
 INLINE LightSample spot_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
     LightSample s = point_light_sample(reference, light_vector(in, position), light_vector(in, radiance));
     s.radiance = scale(s.radiance, spot_falloff(in, negate(s.direction)));
-    return s;
+    return within_range(in, reference, s);
 }
 
 #endif

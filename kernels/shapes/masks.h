@@ -44,7 +44,7 @@ INLINE int passes_analytic(OpacityView o, global const struct Analytic *analytic
     // The two hits of a shape are drawn apart: one of them enters it, the other leaves.
     UInt side = SELECT(dot3(h.normal, direction) < 0.0f, (UInt)0u, (UInt)0x80000000u);
     UInt event = (UInt)(o.triangle_count + index) | side;
-    return any_lane(passes((UInt)r->key, event, opacity_at(o, shape, h.u, h.v)));
+    return any_lane(passes((UInt)r->key, event, opacity_at(o, shape, h.u, h.v, ONE)));
 }
 
 // The first hit that counts of an entry of the analytic order, given its first hit t; `limit` or more: none.

@@ -49,8 +49,8 @@ typedef struct {
     {parameters->seed, opacities, primitive_shapes, shapes, parameters->triangle_count OPACITY_UVS_ARGUMENT     \
          OPACITY_TEXTURE_ARGUMENTS}
 
-// Opacity of shapes at texture coordinates, in [0, 1].
-INLINE Float opacity_at(OpacityView o, UInt shape, Float u, Float v) {
+// Opacity of shapes at texture coordinates, in [0, 1]. `alpha` scales it before the cutoff.
+INLINE Float opacity_at(OpacityView o, UInt shape, Float u, Float v, Float alpha) {
     Float opacity = GATHER_FIELD(o.opacities, Opacity, shape, value.value);
 #if HAS_TEXTURES
     UInt texture = GATHER_UINT_FIELD(o.opacities, Opacity, shape, value.texture);
@@ -61,6 +61,7 @@ INLINE Float opacity_at(OpacityView o, UInt shape, Float u, Float v) {
         opacity = SELECT(textured, found * GATHER_FIELD(o.opacities, Opacity, shape, scale), opacity);
     }
 #endif
+    opacity *= alpha;
     Float cutoff = GATHER_FIELD(o.opacities, Opacity, shape, cutoff);
     Float cut = SELECT(opacity >= cutoff, ONE, ZERO);
     return SELECT(cutoff >= 0.0f, cut, LESSER(GREATER(opacity, ZERO), ONE));
@@ -82,13 +83,22 @@ INLINE Int passes(UInt key, UInt event, Float opacity) {
 // Lanes whose ray passes the triangle it hits at barycentric weights wb and wc of its second and third vertex.
 INLINE Int passes_triangle(OpacityView o, UInt key, UInt primitive, Float wb, Float wc) {
     UInt shape = gather_uint(o.primitive_shapes, primitive);
-    Float u = wb, v = wc;
+    Float u = wb, v = wc, alpha = ONE;
 #if HAS_UVS
-    UInt first_uv = GATHER_UINT_FIELD(o.shapes, Shape, shape, first_uv);
+    UInt first_uv = GATHER_UINT_FIELD(o.opacities, Opacity, shape, first_uv);
     UInt triangle = primitive - GATHER_UINT_FIELD(o.shapes, Shape, shape, first_primitive);
     triangle_uvs(o.uvs, first_uv, triangle, 1.0f - wb - wc, wb, wc, &u, &v);
 #endif
-    return passes(key, primitive, opacity_at(o, shape, u, v));
+#if HAS_VERTEX_OPACITY
+    UInt first_alpha = GATHER_UINT_FIELD(o.opacities, Opacity, shape, first_alpha);
+    Int varies = first_alpha != (UInt)WAVELOBE_NONE;
+    if (any_lane(varies)) {
+        UInt at = SELECT(varies, first_alpha + triangle * 3u, (UInt)0u);
+        Float found = madd(gather(o.uvs, at), 1.0f - wb - wc, madd(gather(o.uvs + 1, at), wb, gather(o.uvs + 2, at) * wc));
+        alpha = SELECT(varies, found, ONE);
+    }
+#endif
+    return passes(key, primitive, opacity_at(o, shape, u, v, alpha));
 }
 
 #endif

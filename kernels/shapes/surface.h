@@ -126,6 +126,9 @@ typedef struct {
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
     Float u, v;    // texture coordinates
+#if HAS_SECOND_UVS
+    Float second_u, second_v;
+#endif
 #if HAS_TANGENTS
     Vec3 dp_du, dp_dv; // change of position with them
 #endif
@@ -240,6 +243,11 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_uv);
     triangle_uvs(s.uvs, first_uv, triangle, wa, wb, wc, &out->u, &out->v);
 #endif
+#if HAS_SECOND_UVS
+    UInt second = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_second_uv);
+    second = SELECT(second == (UInt)WAVELOBE_NONE, first_uv, second);
+    triangle_uvs(s.uvs, second, triangle, wa, wb, wc, &out->second_u, &out->second_v);
+#endif
 #if HAS_TANGENTS
     out->dp_du = e1;
     out->dp_dv = e2;
@@ -264,6 +272,10 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->normal = select3(analytic, h.normal, out->normal);
     out->u = SELECT(analytic, h.u, out->u);
     out->v = SELECT(analytic, h.v, out->v);
+#if HAS_SECOND_UVS
+    out->second_u = SELECT(analytic, h.u, out->second_u);
+    out->second_v = SELECT(analytic, h.v, out->second_v);
+#endif
 #if HAS_VERTEX_COLORS
     out->color = select3(analytic, vec3_all(ONE), out->color);
 #endif
@@ -303,7 +315,12 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     UInt front = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
 #if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);
-    out->material = SELECT(behind, back, front);
+    Int from_back = behind;
+#if HAS_SIDES_BY_WINDING
+    Int by_winding = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_SIDED_BY_WINDING) != (UInt)0u;
+    from_back = SELECT(by_winding, dot3(out->normal, p->direction) > 0.0f, behind);
+#endif
+    out->material = SELECT(from_back, back, front);
 #else
     out->material = front;
 #endif

@@ -26,9 +26,11 @@ struct Light {
     float uv[6];                  // of the three vertices (texture coordinates of a textured emitter)
     Uint32 analytic;              // index of its analytic shape
     float cos_cutoff, cos_beam;   // spot
+    Uint32 smooth_cone;           // spot: 1: between the angles the square of what is linear in the cosine; 0: linear in the angle
+    float inverse_range;          // point, spot: over the distance from which on there is no light, 1 / m; 0: none
     Uint32 trail;                 // way to its leaf in the light tree, a bit a level, lowest first
 };
-WAVELOBE_CHECK_SIZE(Light, 124);
+WAVELOBE_CHECK_SIZE(Light, 132);
 
 // A node of the light tree: bounds on the lights below it.
 struct LightNode {

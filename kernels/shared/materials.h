@@ -22,6 +22,7 @@
 #define MATERIAL_KEEPS_FRAME (MATERIAL_TRANSMISSIVE | MATERIAL_NESTS) // is not turned over when seen from behind
 #define MATERIAL_FLIPS_NORMALS 128u    // maps: normals that face away from the viewer are mirrored
 #define MATERIAL_SHADES_TERMINATOR 256u // maps: softens the edge where the mapped normal sees light and the surface does not
+#define MATERIAL_THIN 512u         // transmissive: the media on both sides are the same
 
 // A parameter: a constant, scaled by nothing, or a texture (index) that replaces it.
 struct TexturedRgb {
@@ -39,8 +40,10 @@ struct Opacity {
     struct TexturedFloat value;
     float scale;  // of a texture's value
     float cutoff; // at least 0: all there from this value on, and not at all below it; negative: none
+    Uint32 first_uv;    // offset into `uvs` of the coordinates that its texture uses; WAVELOBE_NONE: barycentric ones
+    Uint32 first_alpha; // offset into `uvs` of three factors a triangle; WAVELOBE_NONE: one
 };
-WAVELOBE_CHECK_SIZE(Opacity, 16);
+WAVELOBE_CHECK_SIZE(Opacity, 24);
 
 struct Material {
     Uint32 lobes; // bit LOBE_x of bsdf/lobes.def for each lobe it has
@@ -81,6 +84,16 @@ struct RoughTransmittance {
 };
 WAVELOBE_CHECK_SIZE(RoughTransmittance, 256);
 
+// glTF's layers: parameters are products of value and texture.
+struct MetallicRoughnessLayers {
+    struct TexturedFloat coat;           // share of the surface under a clear coat
+    struct TexturedFloat coat_roughness; // square root of its microfacets' alpha
+    struct TexturedFloat transmission;   // share of the base that lets light through
+    struct TexturedFloat specular;       // reflectance of the dielectric at grazing incidence; scales that at normal incidence
+    struct TexturedRgb specular_color;   // ... which is this, at most one
+};
+WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 48);
+
 struct Texture {
     Uint32 kind;         // TEXTURE_x
     Uint32 first_texel;  // bitmap: offset of its rgb texels, in floats
@@ -97,5 +110,6 @@ WAVELOBE_CHECK_SIZE(Texture, 64);
 #define TEXTURE_WRAP_CLAMP 8u
 #define TEXTURE_OTHER_ROWS 16u // bit: rows wrap by their own bits, those above shifted
 #define TEXTURE_ROW_SHIFT 3u
+#define TEXTURE_SECOND_UVS 128u // bit: looked up by the second set of coordinates
 
 #endif

@@ -12,12 +12,13 @@ struct Shape {
     Uint32 first_primitive; // triangle id of its first triangle
     Uint32 first_normal;    // offset into `normals`, in floats, of its first triangle; WAVELOBE_NONE: faceted
     Uint32 first_uv;        // offset into `uvs`; WAVELOBE_NONE: barycentric coordinates serve
+    Uint32 first_second_uv; // the same of the second set; WAVELOBE_NONE: the first serves
     Uint32 first_color;     // offset into `colors`; WAVELOBE_NONE: white
     Uint32 first_light;     // light of its first triangle; WAVELOBE_NONE: does not emit
     Uint32 triangles_per_light; // 1, or 2 for a parallelogram lit as one
     Uint32 flags;           // SHAPE_x bits
 };
-WAVELOBE_CHECK_SIZE(Shape, 36);
+WAVELOBE_CHECK_SIZE(Shape, 40);
 
 // Classes of lobes that either side of it has, and whether it is a light.
 #define SHAPE_HAS_DELTA 1u
@@ -26,6 +27,10 @@ WAVELOBE_CHECK_SIZE(Shape, 36);
 #define SHAPE_EMITS 8u
 #define SHAPE_MASKED 16u // rays ask for its opacity
 #define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
+#define SHAPE_UNSAMPLED 64u      // emits, and is no light: one record of radiance for all of it
+#define SHAPE_EMITS_BEHIND 128u  // on both sides; the back is never sampled
+#define SHAPE_SIDED_BY_WINDING 512u // sides of unlike materials are told by the geometric normal
+#define SHAPE_EMITS_COLORED 256u // scaled by the colours of its vertices
 
 // Perspective camera, film window, and the integrator's limits.
 struct RenderParameters {

@@ -5,13 +5,41 @@
 #include "sampling/mis.h"
 #include "stages/scene_view.h"
 
+#if HAS_UNSAMPLED_EMITTERS
+INLINE Int shape_flag(SurfaceView view, const Surface *surface, uint flag) {
+    return (GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, flags) & (UInt)flag) != (UInt)0u;
+}
+#endif
+
 // Hit lights: which light of all, from the shape and the triangle.
 INLINE UInt light_of_surface(SurfaceView view, const Surface *surface) {
     UInt first_light = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, first_light);
     UInt first_primitive = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, first_primitive);
     UInt per_light = GATHER_UINT_FIELD(view.shapes, Shape, surface->shape, triangles_per_light);
     UInt triangle = surface->primitive - first_primitive;
-    return first_light + SELECT(per_light == (UInt)2u, (UInt)0u, triangle);
+    Int common = per_light == (UInt)2u;
+#if HAS_UNSAMPLED_EMITTERS
+    common |= shape_flag(view, surface, SHAPE_UNSAMPLED);
+#endif
+    return first_light + SELECT(common, (UInt)0u, triangle);
+}
+
+// What the hit light emits towards the path, on its emitting side.
+INLINE Rgb emitted_radiance(LightInput in, SurfaceView view, const Surface *surface) {
+    Float u = surface->u, v = surface->v;
+#if HAS_TEXTURED_EMITTERS && HAS_SECOND_UVS
+    TextureBuffers buffers = {in.textures, in.texels};
+    UInt texture = as_UInt(light_word(in, WORD_OFFSET(Light, radiance) + 3u));
+    Int second = uses_second_uvs(buffers, SELECT(texture == (UInt)WAVELOBE_NONE, (UInt)0u, texture));
+    u = SELECT(second, surface->second_u, u);
+    v = SELECT(second, surface->second_v, v);
+#endif
+    Rgb radiance = light_radiance(in, u, v);
+#if HAS_UNSAMPLED_EMITTERS && HAS_VERTEX_COLORS
+    Int colored = shape_flag(view, surface, SHAPE_EMITS_COLORED);
+    radiance = select3(colored, mul(radiance, surface->color), radiance);
+#endif
+    return radiance;
 }
 
 INLINE uint run_shade_emitted(Block block, const SceneView *scene) {
@@ -25,9 +53,13 @@ INLINE uint run_shade_emitted(Block block, const SceneView *scene) {
         in.light = SELECT(path.live, light_of_surface(view, &surface), (UInt)0u);
         Vec3 normal = surface.normal;
         Int facing = path.live & (dot3(normal, path.direction) < 0.0f);
-        Rgb radiance = light_radiance(in, surface.u, surface.v);
+        Rgb radiance = emitted_radiance(in, view, &surface);
         // A path that a delta lobe or the camera sent here could not have been made by light sampling.
         Int sampled = path.pdf >= 0.0f;
+#if HAS_UNSAMPLED_EMITTERS
+        sampled &= facing & !shape_flag(view, &surface, SHAPE_UNSAMPLED);
+        facing |= path.live & shape_flag(view, &surface, SHAPE_EMITS_BEHIND);
+#endif
         Float weight = ONE;
         if (any_lane(facing & sampled)) {
             // Where the path came from, to within the rounding of the hit.

@@ -57,7 +57,7 @@ INLINE Int passes_veil(OpacityView o, Block block, SurfaceView view, Queue rays,
     // A path may meet both sides of a sphere.
     Int entering = dot3(surface.normal, path.direction) < 0.0f;
     UInt event = surface.primitive | SELECT(entering, (UInt)0u, (UInt)0x80000000u);
-    Float opacity = opacity_at(o, surface.shape, surface.u, surface.v);
+    Float opacity = opacity_at(o, surface.shape, surface.u, surface.v, ONE);
     return veiled & passes(ray_key(o, block, path.id, path.direction), event, opacity);
 }
 #else

@@ -70,7 +70,7 @@ TEST(GltfFaults, Nodes) {
     }), "/nodes/1: node 2 is already a child of node 0");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"][0]["scale"] = {1, 1}; }), "/nodes/0/scale: has 2 numbers; expected 3");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"][0]["scale"] = {1, 1, 1e39}; }), "/nodes/0/scale/2: is 1e+39");
-    EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "/nodes/0: a `rotation` of length zero");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "/nodes/0: a `rotation` of length 0");
 }
 
 TEST(GltfFaults, LongChainsOfNodesAreRead) {
@@ -84,7 +84,7 @@ TEST(GltfFaults, LongChainsOfNodesAreRead) {
 
 TEST(GltfFaults, Buffers) {
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "absent.bin"}}}); }), "absent.bin");
-    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}}}); }), "/buffers/0: has no `uri`");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}}}); }), "/bufferViews/0: asks for buffer 0, which has no `uri`");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:;base64,AAA*"}}}); }),
                  "/buffers/0/uri: character 16 of the data URI is not base64");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:;base64,AAAA"}}}); }),

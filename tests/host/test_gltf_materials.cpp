@@ -31,7 +31,8 @@ TEST(GltfMaterials, DefaultsAreTheSpecifications) {
     EXPECT_EQ(model.base_color.value, Rgb(1.0F));
     EXPECT_EQ(model.metallic.value.x, 1.0F);
     EXPECT_EQ(model.roughness.value.x, 1.0F);
-    EXPECT_EQ(scene.shapes[0].material.back, scene.shapes[0].material.front);
+    EXPECT_TRUE(scene.shapes[0].material.sided_by_winding);
+    EXPECT_EQ(std::get<ThinDielectric>(scene.materials.at(static_cast<std::size_t>(scene.shapes[0].material.back)).model).eta, 1.0F);
 }
 
 TEST(GltfMaterials, FactorsAndExtensions) {
@@ -46,8 +47,8 @@ TEST(GltfMaterials, FactorsAndExtensions) {
     EXPECT_EQ(model.metallic.value.x, 0.25F);
     EXPECT_EQ(model.roughness.value.x, 0.5F);
     EXPECT_EQ(model.ior, 1.8F);
-    EXPECT_EQ(model.specular, 0.5F);
-    EXPECT_EQ(model.specular_color, Rgb(1, 2, 3));
+    EXPECT_EQ(model.specular.value.x, 0.5F);
+    EXPECT_EQ(model.specular_color.value, Rgb(1, 2, 3));
     ASSERT_TRUE(scene.shapes[0].emitter);
     EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(4, 2, 0));
 }
@@ -90,10 +91,79 @@ TEST(GltfMaterials, AlphaModes) {
     EXPECT_EQ(opacity("MASK").cutoff, 0.3F);
 }
 
+// Each texture its own set, those of transforms first; the sets of the mesh follow.
+TEST(GltfMaterials, TwoSetsOfCoordinates) {
+    const Json base = {{"index", 0}, {"texCoord", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 2}}}}}};
+    MaterialFile file(Json{{"pbrMetallicRoughness", {{"baseColorTexture", base}, {"metallicRoughnessTexture", {{"index", 0}, {"texCoord", 1}}}}},
+                           {"emissiveFactor", {1, 1, 1}},
+                           {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}}});
+    file.json["textures"] = Json::array({{{"source", 0}}});
+    file.json["images"] = Json::array({image_of(Rgb(0.5F))});
+    for (const int set : {0, 1, 2}) {
+        const auto x = static_cast<float>(set);
+        file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_" + std::to_string(set)] = file.add_floats({x, x, x, x, x, x}, "VEC2", 2);
+    }
+    const Scene scene = file.read();
+    const auto model = model_of<MetallicRoughness>(scene);
+    EXPECT_FALSE(model.base_color.texture->second_uvs);
+    EXPECT_TRUE(model.roughness.texture->second_uvs);
+    EXPECT_TRUE(scene.shapes[0].emitter->radiance.texture->second_uvs);
+    EXPECT_EQ(mesh_of(scene).uvs[0].x, 2.0F);
+    EXPECT_EQ(mesh_of(scene).second_uvs[0].x, 1.0F);
+    file.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_2");
+    EXPECT_TRUE(has_text(file.faults(), "/meshes/0/primitives/0: its material looks up TEXCOORD_2"));
+}
+
+TEST(GltfMaterials, OpacityOfVertices) {
+    for (const char* mode : {"OPAQUE", "MASK", "BLEND"}) {
+        MaterialFile file(Json{{"alphaMode", mode}});
+        file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+            file.add(std::vector<std::uint8_t>{255, 0, 0, 51, 255, 0, 0, 255, 255, 0, 0, 255}, "VEC4", 5121, 4);
+        file.json["accessors"].back()["normalized"] = true;
+        const Scene scene = file.read();
+        EXPECT_EQ(mesh_of(scene).colors[0], glm::vec3(1, 0, 0));
+        if (std::string(mode) == "OPAQUE") EXPECT_TRUE(mesh_of(scene).alphas.empty());
+        else EXPECT_FLOAT_EQ(mesh_of(scene).alphas.at(0), 0.2F);
+    }
+}
+
+// A tetrahedron shows no back from outside, a triangle does, and a surface with two sides has none.
+TEST(GltfMaterials, BacksOfSingleSidedSurfaces) {
+    const auto clear = [](bool two_sided, const std::vector<float>& positions, const std::vector<std::uint16_t>& indices) {
+        MaterialFile file(Json{{"doubleSided", two_sided}});
+        file.json["meshes"] = Json::array();
+        Json& primitive = file.add_mesh(positions);
+        primitive["material"] = 0;
+        primitive["indices"] = file.add(indices, "SCALAR", 5123, 1);
+        return file.read().shapes[0].material.sided_by_winding;
+    };
+    const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const std::vector<std::uint16_t> outwards{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    const std::vector<std::uint16_t> inwards{0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+    EXPECT_TRUE(clear(false, unit_triangle(), {0, 1, 2}));
+    EXPECT_FALSE(clear(true, unit_triangle(), {0, 1, 2}));
+    EXPECT_FALSE(clear(false, corners, outwards));
+    EXPECT_TRUE(clear(false, corners, inwards));
+}
+
+// What blends is no lamp to sample; what has two sides shines on both.
+TEST(GltfMaterials, EmissionOfBlendedAndTwoSidedSurfaces) {
+    const auto emitter = [](const Json& more) {
+        Json material = {{"emissiveFactor", {1, 1, 1}}};
+        material.update(more);
+        return *MaterialFile(material).read().shapes[0].emitter;
+    };
+    EXPECT_TRUE(emitter(Json::object()).sampled);
+    EXPECT_FALSE(emitter(Json::object()).both_sides);
+    EXPECT_FALSE(emitter({{"alphaMode", "BLEND"}}).sampled);
+    EXPECT_TRUE(emitter({{"doubleSided", true}}).both_sides);
+}
+
 TEST(GltfMaterials, UnlitSurfacesShineInTheirColour) {
     const Scene scene = MaterialFile(Json{{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}}},
                                        {"extensions", {{"KHR_materials_unlit", Json::object()}}}}).read();
     EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(0.5F, 0.25F, 0.125F));
+    EXPECT_TRUE(!scene.shapes[0].emitter->both_sides && !scene.shapes[0].emitter->sampled && scene.shapes[0].emitter->colored);
     EXPECT_EQ(model_of<Diffuse>(scene).reflectance.value, Rgb(0.0F));
 }
 
@@ -101,7 +171,7 @@ TEST(GltfMaterials, PunctualLights) {
     GltfFile file;
     file.add_mesh(unit_triangle());
     file.json["extensions"]["KHR_lights_punctual"]["lights"] =
-        Json::array({{{"type", "point"}, {"intensity", 2}, {"color", {1, 0.5, 0}}},
+        Json::array({{{"type", "point"}, {"intensity", 2}, {"range", 7}, {"color", {1, 0.5, 0}}},
                      {{"type", "directional"}},
                      {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.5}}}}});
     for (int light = 0; light < 3; ++light) {
@@ -115,6 +185,8 @@ TEST(GltfMaterials, PunctualLights) {
     EXPECT_TRUE(scene.notes.empty());
     EXPECT_EQ(std::get<PointEmitter>(scene.emitters[0]).intensity, Rgb(2, 1, 0));
     EXPECT_EQ(std::get<PointEmitter>(scene.emitters[0]).position, glm::vec3(0, 4, 0));
+    EXPECT_EQ(std::get<PointEmitter>(scene.emitters[0]).range, 7.0F);
+    EXPECT_TRUE(std::get<SpotEmitter>(scene.emitters[2]).smooth);
     EXPECT_EQ(std::get<DirectionalEmitter>(scene.emitters[1]).direction, glm::vec3(0, 0, -1));
     EXPECT_NEAR(std::get<SpotEmitter>(scene.emitters[2]).cutoff_degrees, glm::degrees(0.5F), 1e-4F);
 }
@@ -122,6 +194,7 @@ TEST(GltfMaterials, PunctualLights) {
 TEST(GltfMaterials, FaultsOfImagesAndMaterials) {
     const auto faults = [](const Json& image) {
         MaterialFile file(Json{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+        file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = file.add_floats({0, 0, 0, 0, 0, 0}, "VEC2", 2);
         file.json["textures"] = Json::array({{{"source", 0}}});
         file.json["images"] = Json::array({image});
         return file.faults();

@@ -113,6 +113,37 @@ TEST(SpotLight, FallsLinearlyBetweenItsAngles) {
     }
 }
 
+// The recommended falloff of KHR_lights_punctual.
+TEST(SpotLight, FallsSmoothlyWhereAskedTo) {
+    const glm::vec3 axis(glm::normalize(glm::dvec3(0.2, -0.7, 0.4)));
+    for (auto [beam, cutoff] : {std::pair{0.35, 0.5}, {0.0, 1.5}, {1.0, 1.4}}) {
+        Light light = light_at({0.3F, -0.2F, 0.1F}, axis);
+        light.cos_beam = static_cast<float>(std::cos(beam));
+        light.cos_cutoff = static_cast<float>(std::cos(cutoff));
+        light.smooth_cone = 1;
+        const auto inner = static_cast<double>(light.cos_beam);
+        const auto outer = static_cast<double>(light.cos_cutoff);
+        const glm::dvec3 along = glm::normalize(glm::dvec3(axis));
+        const auto share = [&](const glm::dvec3& d) {
+            const double ramp = std::clamp((glm::dot(d, along) - outer) / (inner - outer), 0.0, 1.0);
+            return ramp * ramp;
+        };
+        expect_intensity(spot, light, 1.0, share, 32.0 * half_ulp / (inner - outer));
+    }
+}
+
+// Khronos's recommended window on top of the square of the distance.
+TEST(PointLight, EndsAtItsRange) {
+    Light light = light_at(glm::vec3(0.0F));
+    light.inverse_range = 0.5F;
+    LightProbe probe(point, buffers_of({Light{}, light}));
+    for (const double d : {0.25, 1.0, 1.75, 1.999, 2.001, 10.0}) {
+        const LightResult s = probe.sample(queries_at({glm::vec3(static_cast<float>(d), 0.0F, 0.0F)}, 1)).front();
+        const double window = std::max(1.0 - std::pow(d / 2.0, 4.0), 0.0);
+        EXPECT_NEAR(static_cast<double>(s.radiance.y), 2.0 * window / (d * d), 1e-6 * (1.0 + 1.0 / (d * d))) << d;
+    }
+}
+
 // Values of Mitsuba 3.9.1 (scalar_rgb, Emitter::sample_direction): from (1, 2, 3) towards (2, 1, -1), beam 20 and cutoff
 // 30 degrees.
 TEST(SpotLight, AgreesWithMitsuba) {

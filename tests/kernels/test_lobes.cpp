@@ -47,7 +47,7 @@ std::vector<Case> cases(const std::vector<LobeParameters>& sets) {
 double energy(const Material& m, const glm::vec3& wi, const glm::vec3& wo, const glm::vec3& f_cos) {
     const double value = mean(f_cos);
     if (!is_transmissive(m) || wi.z * wo.z >= 0.0F) return value;
-    const double eta = m.eta.x;
+    const double eta = relative_index(m);
     return wi.z > 0.0F ? value * eta * eta : value / (eta * eta);
 }
 
@@ -192,7 +192,7 @@ TEST_P(Lobes, AreReciprocal) {
         const LobeQuery& q = queries[i];
         const Material& material = m[q.material];
         // f / n^2 is symmetric, n the index of the side the radiance arrives at the viewer from: Veach 1997, section 5.2.
-        const double eta_squared = static_cast<double>(material.eta.x) * static_cast<double>(material.eta.x);
+        const double eta_squared = relative_index(material) * relative_index(material);
         const bool transmits = is_transmissive(material) && q.wi.z * q.wo_or_u.z < 0.0F;
         const double scale_there = (transmits && q.wi.z < 0.0F ? 1.0 / eta_squared : 1.0) / std::abs(q.wo_or_u.z);
         const double scale_back = (transmits && q.wo_or_u.z < 0.0F ? 1.0 / eta_squared : 1.0) / std::abs(q.wi.z);

@@ -28,13 +28,31 @@ inline RoughTransmittance falling_transmittance() {
     return table;
 }
 
+inline MetallicRoughnessLayers layers_of(float coat, float coat_roughness, float transmission, float specular, Packed3 specular_color) {
+    return {{coat, WAVELOBE_NONE}, {coat_roughness, WAVELOBE_NONE}, {transmission, WAVELOBE_NONE}, {specular, WAVELOBE_NONE}, {specular_color, WAVELOBE_NONE}};
+}
+
+// Sets of layers, by their order in lobe_extensions().
+inline const std::vector<MetallicRoughnessLayers>& layer_sets() {
+    static const std::vector<MetallicRoughnessLayers> sets{layers_of(1.0F, 0.3F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}), layers_of(0.4F, 0.7F, 0.8F, 0.6F, {0.2F, 0.1F, 0.02F}),
+                                                           layers_of(0.0F, 0.0F, 1.0F, 1.0F, {0.04F, 0.04F, 0.04F}), layers_of(1.0F, 0.0F, 0.0F, 0.0F, {0.0F, 0.0F, 0.0F})};
+    return sets;
+}
+
 inline const std::vector<::Material>& lobe_extensions() {
     static const std::vector<::Material> records = [] {
         std::vector<::Material> list;
         append_extension(list, falling_transmittance());
+        for (const MetallicRoughnessLayers& layers : layer_sets()) append_extension(list, layers);
         return list;
     }();
     return records;
+}
+
+// The record of a set of layers, for Material::extension.
+inline std::uint32_t layers_record(std::size_t set) {
+    const std::size_t before = (sizeof(RoughTransmittance) + sizeof(::Material) - 1) / sizeof(::Material);
+    return static_cast<std::uint32_t>(before + set);
 }
 
 template <class Extension>

@@ -70,6 +70,14 @@ inline Material metallic_roughness(Material m, float metallic, float roughness, 
     return m;
 }
 
+// With a set of layer_sets(); those that let light through have two sides alike.
+inline Material layered(Material m, std::size_t set) {
+    m.extension = layers_record(set);
+    m.eta = {1.0F, 1.0F, 1.0F};
+    if (layer_sets()[set].transmission.value > 0.0F) m.flags |= MATERIAL_TRANSMISSIVE | MATERIAL_THIN;
+    return m;
+}
+
 // Cosine-weighted mean Fresnel reflectance from inside, by the midpoint rule over squared cosines.
 inline float internal_reflectance(float eta) {
     constexpr int steps = 10000;
@@ -140,6 +148,14 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"between", metallic_roughness(coloured, 0.3F, 0.7F, 0.02F, 0.5F)},
           {"roughest", metallic_roughness(white, 1.0F, 1.0F)},
           {"smoothest", metallic_roughness(white, 1.0F, 0.0F), 1e-4}}},
+        {"layered_metallic_roughness",
+         {{"coated", layered(metallic_roughness(coloured, 0.0F, 0.5F), 0)},
+          {"coated_metal", layered(metallic_roughness(coloured, 1.0F, 0.8F), 0)},
+          {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)},
+          {"pane", layered(metallic_roughness(white, 0.0F, 0.4F), 2)},
+          {"smoothest_coat", layered(metallic_roughness(white, 0.0F, 0.0F), 3), 1e-4}}},
+        {"layered_metallic_roughness_base",
+         {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},
         {"lambert", {{"white", white}, {"coloured", coloured}}},
         {"metallic_roughness_base",
          {{"white", metallic_roughness(white, 0.0F, 0.5F)}, {"coloured", metallic_roughness(coloured, 0.4F, 0.5F, 0.2F)}}},

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -181,6 +182,69 @@ inline ReferenceValue reference_metallic_roughness_base(const ::Material& m, con
     return {to_double(m.diffuse.value) * (passed * wo.z / pi), wo.z / pi};
 }
 
+// Layers, by the extensions' own formulas but for the coat's Fresnel term, which is taken at the half vector.
+struct LayeredTerms {
+    GltfTerms surface, coat;
+    double coat_fresnel, base_share;  // at the half vector
+    double coat_chance, surface_chance, through_chance;
+    MetallicRoughnessLayers layers;
+    bool through = false;
+};
+
+inline double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3 wi, glm::dvec3 wo) {
+    LayeredTerms t{};
+    t.layers = extension_of<MetallicRoughnessLayers>(m);
+    if (m.flags & MATERIAL_TRANSMISSIVE) {
+        if (wi.z < 0.0) wi.z = -wi.z, wo.z = -wo.z;
+        if (wo.z < 0.0) t.through = true, wo.z = -wo.z;
+    }
+    if (wi.z <= 0.0 || wo.z <= 0.0) return {};
+    t.surface = gltf_terms(m, wi, wo);
+    ::Material coat = m;
+    coat.alpha_u.value = t.layers.coat_roughness.value;
+    t.coat = gltf_terms(coat, wi, wo);
+    const double specular = t.layers.specular.value;
+    const glm::dvec3 f0 = glm::min(to_double(t.layers.specular_color.value), glm::dvec3(1.0)) * specular;
+    const double metallic = m.metallic.value;
+    const auto coat_fresnel = [&](double weight) { return static_cast<double>(t.layers.coat.value) * (0.04 + 0.96 * weight); };
+    const auto base_share = [&](double weight) { return (1.0 - coat_fresnel(weight)) * (1.0 - metallic) * (1.0 - largest(f0 + (specular - f0) * weight)); };
+    t.coat_fresnel = coat_fresnel(t.surface.fresnel);
+    t.base_share = base_share(t.surface.fresnel);
+    const double weight = std::pow(1.0 - wi.z, 5.0);
+    const glm::dvec3 base = to_double(m.diffuse.value);
+    const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * weight, base + (1.0 - base) * weight, metallic);
+    const double c = coat_fresnel(weight);
+    const double s = (1.0 - c) * largest(reflectance);
+    const double r = static_cast<double>(t.layers.transmission.value) * base_share(weight) * largest(base);
+    if (c + s + r > 0.0) t.coat_chance = c / (c + s + r), t.surface_chance = s / (c + s + r), t.through_chance = r / (c + s + r);
+    return t;
+}
+
+inline ReferenceValue reference_layered(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const auto t = layered_terms(m, wi, wo);
+    if (!t || t->coat_chance + t->surface_chance + t->through_chance == 0.0) return {};
+    const glm::dvec3 base = to_double(m.diffuse.value);
+    const double cosine = std::abs(wo.z);
+    if (t->through)
+        return {base * (static_cast<double>(t->layers.transmission.value) * t->base_share * t->surface.specular_brdf * cosine),
+                t->through_chance * t->surface.pdf};
+    const double specular = t->layers.specular.value;
+    const glm::dvec3 f0 = glm::min(to_double(t->layers.specular_color.value), glm::dvec3(1.0)) * specular;
+    const double w = t->surface.fresnel;
+    const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * w, base + (1.0 - base) * w, static_cast<double>(m.metallic.value));
+    const glm::dvec3 value = reflectance * ((1.0 - t->coat_fresnel) * t->surface.specular_brdf) + t->coat_fresnel * t->coat.specular_brdf;
+    return {value * cosine, t->surface_chance * t->surface.pdf + t->coat_chance * t->coat.pdf};
+}
+
+inline ReferenceValue reference_layered_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const auto t = layered_terms(m, wi, wo);
+    if (!t || t->through) return {};
+    const double share = (1.0 - static_cast<double>(t->layers.transmission.value)) * t->base_share;
+    return {to_double(m.diffuse.value) * (share * std::abs(wo.z) / pi), std::abs(wo.z) / pi};
+}
+
 inline double reference_rough_transmittance(const ::Material& m, double cosine) {
     const auto& table = extension_of<RoughTransmittance>(m).at;
     const double at = std::min(cosine, 1.0) * (ROUGH_TRANSMITTANCE_STEPS - 1);
@@ -209,6 +273,8 @@ inline const std::map<std::string, ReferenceEval>& reference_evals() {
         {"phong", reference_phong},                     {"lambert", reference_lambert},
         {"plastic_base", reference_plastic_base},       {"metallic_roughness", reference_metallic_roughness},
         {"metallic_roughness_base", reference_metallic_roughness_base},
+        {"layered_metallic_roughness", reference_layered},
+        {"layered_metallic_roughness_base", reference_layered_base},
         {"plastic_base", reference_plastic_base},       {"rough_plastic_coat", reference_rough_plastic_coat},
         {"rough_plastic_base", reference_rough_plastic_base},
     };

@@ -79,6 +79,9 @@ inline glm::vec3 direction_at_height(double z, double phi) {
 
 inline bool is_transmissive(const Material& m) { return (m.flags & MATERIAL_TRANSMISSIVE) != 0; }
 
+// Of the medium below the surface over that above it.
+inline double relative_index(const Material& m) { return (m.flags & MATERIAL_THIN) != 0 ? 1.0 : static_cast<double>(m.eta.x); }
+
 // From normal to grazing incidence; from below, too, for transmissive materials.
 inline std::vector<glm::vec3> incident_directions(const Material& m) {
     std::vector<glm::vec3> result;

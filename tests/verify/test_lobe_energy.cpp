@@ -19,7 +19,7 @@ float radical_inverse(std::uint32_t i, std::uint32_t base) {
 double energy(const Material& m, const glm::vec3& wi, const LobeSample& s) {
     double value = mean(s.value.f_cos) / static_cast<double>(s.value.pdf);
     if (!is_transmissive(m) || wi.z * s.wo.z >= 0.0F) return value;
-    const double eta2 = static_cast<double>(m.eta.x) * static_cast<double>(m.eta.x);
+    const double eta2 = relative_index(m) * relative_index(m);
     return wi.z > 0.0F ? value * eta2 : value / eta2;
 }
 
@@ -116,7 +116,7 @@ TEST_P(LobeEnergy, IsReciprocal) {
         const LobeQuery& q = there[i];
         const Material& m = materials[q.material];
         if (q.wi.z == 0.0F || q.wo_or_u.z == 0.0F) continue;
-        const double eta2 = static_cast<double>(m.eta.x) * static_cast<double>(m.eta.x);
+        const double eta2 = relative_index(m) * relative_index(m);
         const bool crosses = is_transmissive(m) && q.wi.z * q.wo_or_u.z < 0.0F;
         const double to_there = (crosses && q.wi.z < 0.0F ? 1.0 / eta2 : 1.0) / std::abs(q.wo_or_u.z);
         const double to_back = (crosses && q.wo_or_u.z < 0.0F ? 1.0 / eta2 : 1.0) / std::abs(q.wi.z);

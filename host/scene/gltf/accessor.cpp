@@ -89,7 +89,9 @@ Accessors::Accessors(Document& document)
 }
 
 // The place of `count` elements in the view that `place` names.
-Accessors::Block Accessors::block(const Element& place, std::size_t count, std::size_t element_bytes, bool interleaved) {
+// `element_bytes` lie between elements, and `last_bytes` are read of the last.
+Accessors::Block Accessors::block(const Element& place, std::size_t count, const Extent& extent, bool interleaved) {
+    const auto [element_bytes, last_bytes, alignment] = extent;
     const auto index = place.index("bufferView", document_.views.size(), "buffer views");
     const auto offset = static_cast<std::size_t>(place.whole("byteOffset", 0, 0, std::int64_t{1} << 50));
     if (!index || !document_.views[*index].readable) return {};
@@ -99,14 +101,23 @@ Accessors::Block Accessors::block(const Element& place, std::size_t count, std::
         place.fault(fmt::format("elements of {} bytes in buffer view {}, whose stride is {}", element_bytes, *index, stride));
         return {};
     }
+    if ((offset + view.offset) % alignment != 0)
+        place.fault(fmt::format("starts at byte {} of its buffer; expected a multiple of {}", offset + view.offset, alignment));
     // The last element need not be followed by the rest of a stride.
     const std::size_t room = view.bytes.size();
-    if (offset > room || element_bytes > room - offset || (room - offset - element_bytes) / stride < count - 1) {
+    if (offset > room || last_bytes > room - offset || (room - offset - last_bytes) / stride < count - 1) {
         place.fault(fmt::format("{} elements of {} bytes, {} apart, from byte {} on reach beyond buffer view {}, which has {}",
                                 count, element_bytes, stride, offset, *index, room));
         return {};
     }
     return {view.bytes.data() + offset, stride};
+}
+
+Accessors::Extent Accessors::extent_of(const Accessor& a) {
+    const Shape& shape = shapes().at(a.type);
+    const std::size_t column = column_bytes(shape, a.component_type);
+    const std::size_t number = component_bytes(a.component_type);
+    return {shape.columns * column, (shape.columns - 1) * column + shape.rows * number, number};
 }
 
 void Accessors::check(std::size_t i) {
@@ -124,10 +135,12 @@ void Accessors::check(std::size_t i) {
         element.fault(fmt::format("component type {}; expected 5120, 5121, 5122, 5123, 5125 or 5126", a.component_type));
     if (document_.faults.size() != before || !element.present() || a.count == 0) return;
     a.components = shape->second.columns * shape->second.rows;
-    const std::size_t bytes = shape->second.columns * column_bytes(shape->second, a.component_type);
     if (element.has("bufferView")) {
-        blocks_[i] = block(element, a.count, bytes, true);
+        blocks_[i] = block(element, a.count, extent_of(a), true);
         if (blocks_[i].data == nullptr) return;
+    } else if (element.has("byteOffset")) {
+        element.fault("has a `byteOffset` and no `bufferView`");
+        return;
     } else if (a.count > most_zeros) {
         element.fault(fmt::format("{} elements without a buffer view; expected at most {}", a.count, most_zeros));
         return;
@@ -152,9 +165,9 @@ void Accessors::check_sparse(std::size_t i) {
         return;
     }
     if (count == 0 || !where.has("bufferView") || !what.has("bufferView")) return;
-    const Block indices = block(where, count, component_bytes(type), false);
-    const Shape& shape = shapes().at(a.type);
-    const Block values = block(what, count, shape.columns * column_bytes(shape, a.component_type), false);
+    const std::size_t index_bytes = component_bytes(type);
+    const Block indices = block(where, count, {index_bytes, index_bytes, index_bytes}, false);
+    const Block values = block(what, count, extent_of(a), false);
     if (indices.data == nullptr || values.data == nullptr) return;
     Sparse& out = sparse_[i];
     out.values = values;

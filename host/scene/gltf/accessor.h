@@ -37,14 +37,20 @@ private:
         const char* data = nullptr;  // null: all zero
         std::size_t stride = 0;
     };
+    struct Extent {  // in bytes
+        std::size_t element;    // from one to the next where they are packed
+        std::size_t last;       // read of the last
+        std::size_t alignment;  // of each number
+    };
     struct Sparse {
         std::vector<std::uint32_t> indices;
         Block values;
     };
 
+    static Extent extent_of(const Accessor& a);
     void check(std::size_t i);
     void check_sparse(std::size_t i);
-    Block block(const Element& place, std::size_t count, std::size_t element_bytes, bool interleaved);
+    Block block(const Element& place, std::size_t count, const Extent& extent, bool interleaved);
     template <class Out, class Convert>
     void read(std::size_t i, std::vector<Out>& out, Convert convert) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,7 @@ Keys read_keys(const Element& sampler, const Accessors& accessors) {
         sampler.fault("has keys that are not finite");
         return {};
     }
+    if (keys.interpolation == Interpolation::cubic && keys.times.size() < 2) sampler.fault("has one key; cubic splines need two");
     if (std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater_equal<>()) != keys.times.end()) {
         sampler.fault("has times that do not ascend");
         return {};
@@ -85,13 +87,26 @@ std::vector<double> value_at(const Keys& keys, double time, bool rotation) {
     return out;
 }
 
-void set_channel(const Element& target, const std::string& path, const Keys& keys, double time, LocalTransform& local) {
-    const bool rotation = path == "rotation";
-    if (path != "weights" && keys.width != (rotation ? 4U : 3U)) {
-        target.fault(fmt::format("{} numbers a key for `{}`", keys.width, path));
-        return;
+// Whether a node has what the keys set, in as many numbers.
+void check_channel(Document& document, const Element& target, const std::string& path, const Keys& keys, std::size_t node) {
+    if (keys.width == 0) return;
+    std::size_t expected = keys.width;
+    if (path == "translation" || path == "scale") expected = 3;
+    if (path == "rotation") expected = 4;
+    if (path == "weights") {
+        const auto mesh = document.nodes[node].index("mesh", document.meshes.size(), "meshes");
+        expected = 0;
+        if (mesh)
+            for (const Element& primitive : document.meshes[*mesh].objects("primitives"))
+                expected = std::max(expected, primitive.objects("targets").size());
+    } else if (document.nodes[node].has("matrix") && path != "pointer") {
+        target.fault(fmt::format("sets the `{}` of node {}, which has a `matrix` instead", path, node));
     }
-    const std::vector<double> v = value_at(keys, time, rotation);
+    if (keys.width != expected) target.fault(fmt::format("has {} numbers a key for `{}` of node {}; expected {}", keys.width, path, node, expected));
+}
+
+void set_channel(const std::string& path, const Keys& keys, double time, LocalTransform& local) {
+    const std::vector<double> v = value_at(keys, time, path == "rotation");
     if (path == "weights") local.weights = v;
     else if (path == "translation") local.translation = {v[0], v[1], v[2]};
     else if (path == "scale") local.scale = {v[0], v[1], v[2]};
@@ -101,6 +116,7 @@ void set_channel(const Element& target, const std::string& path, const Keys& key
 void animate_one(Document& document, const Element& animation, const Accessors& accessors, std::optional<double> time, NodeTree& tree) {
     std::vector<Keys> samplers;
     for (const Element& sampler : animation.objects("samplers")) samplers.push_back(read_keys(sampler, accessors));
+    std::set<std::pair<std::size_t, std::string>> targets;
     for (const Element& channel : animation.objects("channels")) {
         for (const char* name : {"sampler", "target"}) channel.require(name);
         const auto sampler = channel.index("sampler", samplers.size(), "samplers");
@@ -109,9 +125,11 @@ void animate_one(Document& document, const Element& animation, const Accessors& 
         const auto node = target.index("node", document.nodes.size(), "nodes");
         const std::string path = target.text("path", "translation");
         const bool known = path == "translation" || path == "rotation" || path == "scale" || path == "weights";
+        if (sampler && node) check_channel(document, target, path, samplers[*sampler], *node);
+        if (node && !targets.emplace(*node, path).second) target.fault(fmt::format("the `{}` of node {} has another channel already", path, *node));
         if (!known) document.warn(fmt::format("{}: {}: the path `{}` is passed over", document.file, target.path(), path));
         if (!known || !time || !sampler || !node || samplers[*sampler].width == 0) continue;
-        set_channel(target, path, samplers[*sampler], *time, tree.local[*node]);
+        set_channel(path, samplers[*sampler], *time, tree.local[*node]);
     }
 }
 

@@ -109,6 +109,7 @@ Perspective read_perspective(const Element& camera) {
     if (p.has("aspectRatio")) out.aspect = p.number("aspectRatio", 1.0, {1e-4, 1e4});
     out.near_clip = p.number("znear", out.near_clip, {1e-30, 1e30});
     out.far_clip = p.number("zfar", out.far_clip, {1e-30, 3.5e38});
+    if (!(out.near_clip < out.far_clip)) p.fault("`zfar` is not beyond `znear`");
     return out;
 }
 
@@ -122,6 +123,7 @@ void place_camera(Document& document, const NodeTree& tree, const PictureSize& s
         if (type != "perspective" && type != "orthographic")
             camera.fault("type `" + type + "`; expected perspective or orthographic");
         camera.require(type == "orthographic" ? "orthographic" : "perspective");
+        if (camera.has("perspective") && camera.has("orthographic")) camera.fault("has both `perspective` and `orthographic`; expected one of them");
         cameras.push_back(type == "perspective" ? std::optional(read_perspective(camera)) : std::nullopt);
     }
     for (const Element& node : document.nodes) node.index("camera", cameras.size(), "cameras");
@@ -139,8 +141,6 @@ void place_camera(Document& document, const NodeTree& tree, const PictureSize& s
         scene.camera.fov_x_degrees = horizontal_degrees(perspective.vertical, scene.film);
         scene.camera.near_clip = static_cast<float>(perspective.near_clip);
         scene.camera.far_clip = static_cast<float>(std::min(perspective.far_clip, 3e38));
-        if (!(perspective.near_clip < perspective.far_clip))
-            document.cameras[*index].fault("`zfar` is not beyond `znear`");
         return;
     }
     if (orthographic)

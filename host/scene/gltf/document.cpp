@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "scene/file.h"
+#include "scene/gltf/json_place.h"
 
 namespace wavelobe::gltf {
 
@@ -57,16 +58,18 @@ int base64_digit(char c) {
 }  // namespace
 
 const std::vector<std::string>& supported_extensions() {
-    static const std::vector<std::string> names{"EXT_mesh_gpu_instancing",      "KHR_lights_punctual",     "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",            "KHR_materials_specular",  "KHR_materials_transmission",
-                                                "KHR_materials_unlit",          "KHR_materials_volume",    "KHR_mesh_quantization",
-                                                "KHR_texture_transform"};
+    static const std::vector<std::string> names{"EXT_mesh_gpu_instancing",   "KHR_draco_mesh_compression", "KHR_lights_punctual",        "KHR_materials_clearcoat",
+                                                "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_specular",
+                                                "KHR_materials_transmission",    "KHR_materials_unlit",    "KHR_materials_volume",
+                                                "KHR_mesh_quantization",         "KHR_texture_transform"};
     return names;
 }
 
 Document::Document(const std::string& path)
     : file(path), folder(std::filesystem::path(path).parent_path().string()), faults(path), content_(read_file(path)) {
-    parse_json(split_container(content_));
+    const std::string_view text = split_container(content_);
+    parse_json(text);
+    if (text.size() == content_.size()) faults.set_text(text);
     root = Element(&json_, "", &faults);
     check_version();
     check_extensions();
@@ -111,6 +114,9 @@ std::string_view Document::split_container(const std::string& content) {
         if (size > length - offset - 8)
             refuse(offset, fmt::format("a chunk of {} bytes where {} are left", size, length - offset - 8));
         const std::string_view bytes(content.data() + offset + 8, size);
+        if (size % 4 != 0) refuse(offset, fmt::format("a chunk of {} bytes; expected a multiple of 4", size));
+        if (chunk > 0 && (type == chunk_json || (chunk > 1 && type == chunk_binary)))
+            refuse(offset + 4, fmt::format("a second {} chunk", type == chunk_json ? "JSON" : "binary"));
         if (chunk == 0) {
             if (type != chunk_json) refuse(offset + 4, fmt::format("the first chunk is of type 0x{:08x}; expected JSON", type));
             text = bytes;
@@ -118,19 +124,13 @@ std::string_view Document::split_container(const std::string& content) {
             binary_chunk_ = bytes;
         }
         offset += 8 + size;
-        offset += (4 - offset % 4) % 4;
     }
+    if (offset != length) refuse(offset, fmt::format("{} bytes where a chunk's header takes 8", length - offset));
     if (text.empty()) refuse(12, "no JSON chunk");
     return text;
 }
 
 void Document::parse_json(std::string_view text) {
-    const auto place = [&](std::size_t byte) {  // 1-based, of the first character that does not fit
-        const std::string_view before = text.substr(0, std::min(byte > 0 ? byte - 1 : 0, text.size()));
-        const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-        const std::size_t start = before.rfind('\n');
-        return std::pair(static_cast<int>(line), static_cast<int>(before.size() - (start == std::string_view::npos ? 0 : start + 1)) + 1);
-    };
     const auto callback = [&](int depth, Json::parse_event_t, Json&) {
         if (depth > deepest_nesting)
             throw InputError(Fault{file, 0, 0, "", fmt::format("JSON nested deeper than {} levels", deepest_nesting), "no glTF needs that"});
@@ -139,7 +139,7 @@ void Document::parse_json(std::string_view text) {
     try {
         json_ = Json::parse(text, callback);
     } catch (const Json::parse_error& error) {
-        const auto [line, column] = place(error.byte);
+        const auto [line, column] = place_in_text(text, error.byte > 0 ? error.byte - 1 : 0);
         std::string what = error.what();
         const std::size_t start = what.find("syntax error");
         if (start != std::string::npos) what = what.substr(start);
@@ -252,7 +252,11 @@ void Document::read_buffers() {
         } else if (i == 0 && binary_chunk_) {
             bytes = *binary_chunk_;
         } else if (buffer.present()) {
-            buffer.fault("has no `uri`, and the file no binary chunk that would take its place");
+            // Its bytes come from elsewhere: a fault for those that ask for them.
+            readable_.push_back(false);
+            buffers_.emplace_back();
+            empty_.push_back(i);
+            continue;
         }
         if (faults.size() == before && bytes.size() < length)
             buffer.fault(fmt::format("claims {} bytes and has {}", length, bytes.size()), "the file may be cut short");
@@ -269,14 +273,20 @@ void Document::read_views() {
         const auto buffer = view.index("buffer", buffers_.size(), "buffers");
         const auto offset = static_cast<std::size_t>(view.whole("byteOffset", 0, 0, std::int64_t{1} << 50));
         const auto length = static_cast<std::size_t>(view.whole("byteLength", 0, 1, std::int64_t{1} << 50));
-        const auto stride = static_cast<std::size_t>(view.whole("byteStride", 0, 0, 252));
+        const auto stride = static_cast<std::size_t>(view.whole("byteStride", 0, 4, 252));
+        if (stride % 4 != 0) view.fault(fmt::format("a `byteStride` of {}; expected a multiple of 4", stride));
+        const bool empty = buffer && std::find(empty_.begin(), empty_.end(), *buffer) != empty_.end();
+        if (empty && view.extension("EXT_meshopt_compression").present())
+            view.fault("is compressed by EXT_meshopt_compression, which is not supported", "export without it");
+        else if (empty)
+            view.fault(fmt::format("asks for buffer {}, which has no `uri`, and the file no binary chunk that would take its place", *buffer));
         BufferView out;
         if (buffer && faults.size() == before && readable_[*buffer]) {
             const std::string_view bytes = buffers_[*buffer];
             if (offset > bytes.size() || length > bytes.size() - offset) {
                 view.fault(fmt::format("bytes {} to {} of buffer {}, which has {}", offset, offset + length, *buffer, bytes.size()));
             } else {
-                out = {bytes.substr(offset, length), stride, true};
+                out = {bytes.substr(offset, length), offset, stride, true};
             }
         }
         views.push_back(out);

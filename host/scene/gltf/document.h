@@ -12,6 +12,7 @@ namespace wavelobe::gltf {
 
 struct BufferView {
     std::string_view bytes;
+    std::size_t offset = 0;  // of its bytes in the buffer
     std::size_t stride = 0;  // 0: elements are tightly packed
     bool readable = false;   // false after a fault
 };
@@ -55,6 +56,7 @@ private:
     std::vector<std::string> owned_;
     std::vector<std::string_view> buffers_;
     std::vector<bool> readable_;
+    std::vector<std::size_t> empty_;  // buffers without bytes
 };
 
 inline bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
+
+#include "scene/gltf/json_place.h"
 
 namespace wavelobe::gltf {
 
@@ -49,6 +52,8 @@ void Faults::add(const InputError& error, const std::string& path) {
 
 void Faults::raise() const {
     std::vector<Fault> list = list_;
+    for (Fault& fault : list)
+        if (!text_.empty() && fault.file == file_ && fault.line == 0) std::tie(fault.line, fault.column) = place_in_json(text_, fault.element);
     if (left_out_ > 0) list.push_back(Fault{file_, 0, 0, "", fmt::format("and {} more faults", left_out_), ""});
     throw InputError(std::move(list));
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,9 @@ class Faults {
 public:
     explicit Faults(std::string file) : file_(std::move(file)) {}
 
+    // The text in which faults look up the lines of their paths; it must outlive them.
+    void set_text(std::string_view text) { text_ = text; }
+
     void add(const std::string& path, std::string message, std::string hint = "");
     // Faults of a file that the document names at `path`.
     void add(const InputError& error, const std::string& path);
@@ -34,6 +38,7 @@ private:
     void add(Fault fault);
 
     std::string file_;
+    std::string_view text_;
     std::vector<Fault> list_;
     std::size_t left_out_ = 0;
 };

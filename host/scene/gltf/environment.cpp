@@ -19,7 +19,7 @@ double softbox(const glm::dvec3& d, const glm::dvec3& axis, double inner, double
 double radiance(const glm::dvec3& d) {
     const double upward = 0.5 + 0.5 * std::clamp(3.0 * d.y, -1.0, 1.0);
     return 0.3 + 0.25 * upward + 2.5 * softbox(d, {-0.6, 0.8, 0.7}, 18.0, 30.0) + 0.8 * softbox(d, {0.9, 0.3, 0.5}, 15.0, 35.0) +
-           1.0 * softbox(d, {0.2, 0.5, -1.0}, 15.0, 30.0);
+           1.0 * softbox(d, {0.2, 1.2, -1.0}, 12.0, 24.0);
 }
 
 }  // namespace

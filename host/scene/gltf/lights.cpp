@@ -13,6 +13,7 @@ struct Punctual {
     Rgb intensity{1.0F};
     double inner = 0.0;  // radians from the axis
     double outer = 0.0;
+    float range = 0.0F;  // 0: none
 };
 
 Punctual read_light(const Element& light) {
@@ -23,7 +24,8 @@ Punctual read_light(const Element& light) {
         light.fault("type `" + out.type + "`; expected directional, point or spot");
     const auto color = light.vector<3>("color", {1, 1, 1}, {0.0, 1e30});
     out.intensity = Rgb{color[0], color[1], color[2]} * static_cast<float>(light.number("intensity", 1.0, {0.0, 1e30}));
-    light.number("range", 1.0, {1e-30, 1e30});
+    if (light.has("range")) out.range = static_cast<float>(light.number("range", 1.0, {1e-30, 1e30}));
+    if (out.type == "spot") light.require("spot");
     const Element spot = light.object("spot");
     constexpr double quarter = 1.5707963267948966;
     out.inner = spot.number("innerConeAngle", 0.0, {0.0, quarter + 1e-6});
@@ -43,8 +45,9 @@ glm::mat4 turned(const glm::dmat4& world) {
 Emitter emitter_of(const Punctual& light, const glm::dmat4& world) {
     const glm::mat4 frame = turned(world);
     if (light.type == "directional") return DirectionalEmitter{glm::vec3(frame[2]), light.intensity};
-    if (light.type == "point") return PointEmitter{glm::vec3(world[3]), light.intensity};
-    return SpotEmitter{frame, light.intensity, static_cast<float>(glm::degrees(light.outer)), static_cast<float>(glm::degrees(light.inner))};
+    if (light.type == "point") return PointEmitter{glm::vec3(world[3]), light.intensity, light.range};
+    const auto degrees = [](double radians) { return static_cast<float>(glm::degrees(radians)); };
+    return SpotEmitter{frame, light.intensity, degrees(light.outer), degrees(light.inner), light.range, true};
 }
 
 }  // namespace
@@ -55,7 +58,10 @@ void add_punctual_lights(Document& document, const NodeTree& tree, Scene& scene)
     const auto light_of = [&](std::size_t node) {
         return document.nodes[node].extension("KHR_lights_punctual").index("light", lights.size(), "lights");
     };
-    for (std::size_t node = 0; node < document.nodes.size(); ++node) light_of(node);
+    for (std::size_t node = 0; node < document.nodes.size(); ++node) {
+        document.nodes[node].extension("KHR_lights_punctual").require("light");
+        light_of(node);
+    }
     for (const std::size_t node : tree.shown) {
         const auto index = light_of(node);
         if (!index) continue;

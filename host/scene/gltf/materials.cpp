@@ -26,22 +26,28 @@ double mean(const Parameter& p) {
 
 }  // namespace
 
-std::shared_ptr<const Texture> Materials::take(const Element& owner, const char* name, const TextureUse& use, Appearance& out) {
-    if (!use.texture) return nullptr;
-    if (!uv_chosen_) out.uv_set = use.uv_set;
-    else if (out.uv_set != use.uv_set)
-        document_.warn(fmt::format("{}: {}/{} looks up TEXCOORD_{}, and other textures of its material TEXCOORD_{}, which serves for all",
-                                   document_.file, owner.path(), name, use.uv_set, out.uv_set));
-    uv_chosen_ = true;
-    return use.texture;
+std::shared_ptr<const Texture> Materials::take(const Element& owner, const char* name, Transfer transfer, Appearance& out, const Rgb& factor) {
+    const Element info = owner.object(name);
+    if (!info.present()) return nullptr;
+    const std::int64_t set = uv_set_of(info);
+    auto slot = std::find(out.uv_sets.begin(), out.uv_sets.end(), set);
+    if (slot == out.uv_sets.end() && out.uv_sets.size() == 2) {
+        document_.warn(fmt::format("{}: {} is the third set of coordinates of its material, TEXCOORD_{}; TEXCOORD_{} serves in its place",
+                                   document_.file, info.path(), set, out.uv_sets[0]));
+        slot = out.uv_sets.begin();
+    }
+    if (slot == out.uv_sets.end()) slot = out.uv_sets.insert(slot, set);
+    return textures_.use(info, transfer, factor, slot != out.uv_sets.begin());
 }
 
 void Materials::read_emission(const Element& material, Appearance& out) {
     const double strength = material.extension("KHR_materials_emissive_strength").number("emissiveStrength", 1.0, positive);
     const Rgb emission = rgb(material.vector<3>("emissiveFactor", {0, 0, 0}, positive)) * static_cast<float>(strength);
-    const TextureUse use = textures_.scaled(material, "emissiveTexture", Transfer::of_format, emission);
+    const auto texture = take(material, "emissiveTexture", Transfer::of_format, out, emission);
     if (emission == Rgb(0.0F)) return;
-    out.emitter = AreaEmitter{{emission, take(material, "emissiveTexture", use, out)}};
+    // Of a surface that is not all there neither is its light, which sampling does not know.
+    const bool whole = material.text("alphaMode", "OPAQUE") == "OPAQUE";
+    out.emitter = AreaEmitter{{emission, texture}, material.flag("doubleSided", false), whole};
 }
 
 void Materials::read_alpha(const Element& material, float factor, Appearance& out) {
@@ -50,45 +56,60 @@ void Materials::read_alpha(const Element& material, float factor, Appearance& ou
         material.fault("alphaMode `" + mode + "`; expected OPAQUE, MASK or BLEND");
     const double cutoff = material.number("alphaCutoff", 0.5, positive);
     if (mode != "MASK" && mode != "BLEND") return;
+    out.blends = true;
     Opacity& opacity = out.surface.opacity;
     opacity.value.value = Rgb(factor);
     opacity.texture_scale = factor;
     if (mode == "MASK") opacity.cutoff = static_cast<float>(cutoff);
     const Element pbr = material.object("pbrMetallicRoughness");
-    opacity.value.texture = take(pbr, "baseColorTexture", textures_.use(pbr, "baseColorTexture", Transfer::alpha), out);
+    opacity.value.texture = take(pbr, "baseColorTexture", Transfer::alpha, out);
 }
 
-// A surface that lets light through is one of the dielectrics where the factor is at least one half.
-std::optional<MaterialModel> Materials::read_transmission(const Element& material, const MetallicRoughness& surface, Appearance& out) {
+// What a member of an extension says of a scalar: a factor, and a channel of a texture.
+Parameter Materials::read_scalar(const Element& owner, const char* factor, double fallback, const char* texture, Transfer transfer, int channel,
+                                 Appearance& out) {
+    const auto value = static_cast<float>(owner.number(factor, fallback, unit));
+    return {Rgb(value), take(owner, texture, transfer, out), channel};
+}
+
+void Materials::read_layers(const Element& material, MetallicRoughness& model, Appearance& out) {
+    const Element specular = material.extension("KHR_materials_specular");
+    model.specular = read_scalar(specular, "specularFactor", 1.0, "specularTexture", Transfer::alpha, 0, out);
+    model.specular_color.value = rgb(specular.vector<3>("specularColorFactor", {1, 1, 1}, positive));
+    model.specular_color.texture = take(specular, "specularColorTexture", Transfer::of_format, out);
+    const Element coat = material.extension("KHR_materials_clearcoat");
+    model.clearcoat = read_scalar(coat, "clearcoatFactor", 0.0, "clearcoatTexture", Transfer::linear, 0, out);
+    model.clearcoat_roughness = read_scalar(coat, "clearcoatRoughnessFactor", 0.0, "clearcoatRoughnessTexture", Transfer::linear, 1, out);
+    if (coat.has("clearcoatNormalTexture"))
+        document_.warn(fmt::format("{}: {}/clearcoatNormalTexture: passed over", document_.file, coat.path()));
     const Element transmission = material.extension("KHR_materials_transmission");
-    const double share = transmission.number("transmissionFactor", 0.0, unit);
+    model.transmission = read_scalar(transmission, "transmissionFactor", 0.0, "transmissionTexture", Transfer::linear, 0, out);
+}
+
+// A volume that mostly lets light through is one of the dielectrics; other transmission is that of a thin wall.
+std::optional<MaterialModel> Materials::read_volume(const Element& material, const MetallicRoughness& surface, Appearance& out) {
     const Element volume = material.extension("KHR_materials_volume");
     const double thickness = volume.number("thicknessFactor", 0.0, positive);
     volume.number("attenuationDistance", 1.0, positive);
     volume.vector<3>("attenuationColor", {1, 1, 1}, unit);
+    const double share = mean(surface.transmission);
+    if (thickness == 0.0 || share == 0.0) return {};
     if (share < 0.5 || mean(surface.metallic) > 0.5) {
-        if (share > 0.0)
-            document_.warn(fmt::format("{}: {}: a transmission of {} {}is taken as none", document_.file, material.path(), share,
-                                       share < 0.5 ? "" : "of a metal "));
+        document_.warn(fmt::format("{}: {}: a volume that lets {:.2g} of the light through is taken as a thin wall", document_.file, material.path(), share));
         return {};
     }
-    if (transmission.has("transmissionTexture"))
-        document_.warn(fmt::format("{}: {}: the texture of the transmission is passed over", document_.file, material.path()));
+    if (surface.transmission.texture || share < 1.0)
+        document_.warn(fmt::format("{}: {}: all of the volume lets light through, whatever its transmission", document_.file, material.path()));
     Parameter tint = surface.base_color;
     if (tint.texture) {
         const Element pbr = material.object("pbrMetallicRoughness");
-        tint.texture = take(pbr, "baseColorTexture", textures_.scaled(pbr, "baseColorTexture", Transfer::of_format, tint.value), out);
+        tint.texture = take(pbr, "baseColorTexture", Transfer::of_format, out, tint.value);
     }
-    if (thickness > 0.0 && volume.has("attenuationDistance"))
+    if (volume.has("attenuationDistance"))
         document_.warn(fmt::format("{}: {}: absorption inside the volume is passed over", document_.file, material.path()));
     const auto roughness = static_cast<float>(mean(surface.roughness));
     const float alpha = roughness * roughness;
     const Parameter white{Rgb(1.0F), nullptr};
-    if (thickness == 0.0) {
-        if (alpha > 1e-3F)
-            document_.warn(fmt::format("{}: {}: light goes straight through, whatever its roughness", document_.file, material.path()));
-        return ThinDielectric{surface.ior, white, tint};
-    }
     // Light crosses the surface twice.
     if (!tint.texture) tint.value = glm::sqrt(tint.value);
     if (alpha <= 1e-3F) return Dielectric{surface.ior, white, tint};
@@ -101,18 +122,22 @@ MaterialModel Materials::read_model(const Element& material, Appearance& out) {
     const auto base = pbr.vector<4>("baseColorFactor", {1, 1, 1, 1}, unit);
     MetallicRoughness model;
     model.base_color.value = {base[0], base[1], base[2]};
-    model.base_color.texture = take(pbr, "baseColorTexture", textures_.use(pbr, "baseColorTexture", Transfer::of_format), out);
+    model.base_color.texture = take(pbr, "baseColorTexture", Transfer::of_format, out);
     read_alpha(material, base[3], out);
     if (material.extension("KHR_materials_unlit").present()) {
-        // It shines in its colour and reflects nothing.
-        const TextureUse use = textures_.scaled(pbr, "baseColorTexture", Transfer::of_format, model.base_color.value);
-        out.emitter = AreaEmitter{{model.base_color.value, take(pbr, "baseColorTexture", use, out)}};
+        // It shines in its colour and reflects nothing. Paths that find it see it so; it is no lamp, and not sampled.
+        const Rgb color = model.base_color.value;
+        AreaEmitter glow;
+        glow.radiance = {color, take(pbr, "baseColorTexture", Transfer::of_format, out, color)};
+        glow.both_sides = material.flag("doubleSided", false);
+        glow.sampled = false;
+        glow.colored = true;
+        out.emitter = glow;
         return Diffuse{{Rgb(0.0F), nullptr}};
     }
     model.metallic.value = Rgb(static_cast<float>(pbr.number("metallicFactor", 1.0, unit)));
     model.roughness.value = Rgb(static_cast<float>(pbr.number("roughnessFactor", 1.0, unit)));
-    const TextureUse both = textures_.use(pbr, "metallicRoughnessTexture", Transfer::linear);
-    model.roughness.texture = model.metallic.texture = take(pbr, "metallicRoughnessTexture", both, out);
+    model.roughness.texture = model.metallic.texture = take(pbr, "metallicRoughnessTexture", Transfer::linear, out);
     model.roughness.channel = 1;
     model.metallic.channel = 2;
     model.ior = static_cast<float>(material.extension("KHR_materials_ior").number("ior", 1.5, positive));
@@ -120,17 +145,13 @@ MaterialModel Materials::read_model(const Element& material, Appearance& out) {
         material.extension("KHR_materials_ior").fault(fmt::format("an index of {}; expected 0, or at least 1", model.ior));
         model.ior = 1.5F;
     }
-    const Element specular = material.extension("KHR_materials_specular");
-    model.specular = static_cast<float>(specular.number("specularFactor", 1.0, unit));
-    model.specular_color = rgb(specular.vector<3>("specularColorFactor", {1, 1, 1}, positive));
-    for (const char* name : {"specularTexture", "specularColorTexture"})
-        if (specular.has(name)) document_.warn(fmt::format("{}: {}/{}: passed over", document_.file, specular.path(), name));
-    if (const auto through = read_transmission(material, model, out)) return *through;
+    read_layers(material, model, out);
+    if (const auto volume = read_volume(material, model, out)) return *volume;
     return model;
 }
 
 void Materials::name_what_is_left_out(const Element& material) {
-    for (const char* name : {"KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy"})
+    for (const char* name : {"KHR_materials_sheen", "KHR_materials_anisotropy"})
         if (material.extension(name).present())
             document_.warn(fmt::format("{}: {}: {} is passed over", document_.file, material.path(), name));
     const Element normal = material.object("normalTexture");
@@ -147,12 +168,13 @@ void Materials::name_what_is_left_out(const Element& material) {
 
 Appearance Materials::read(const Element& material) {
     Appearance out;
-    uv_chosen_ = false;
     MaterialModel model = read_model(material, out);
     if (!material.extension("KHR_materials_unlit").present()) read_emission(material, out);
-    material.flag("doubleSided", false);
     name_what_is_left_out(material);
-    // Paths have no faces to cull: both sides show the material, whatever `doubleSided` says.
+    // What lets light through needs both of its sides.
+    const auto* opaque = std::get_if<MetallicRoughness>(&model);
+    const bool unlit = std::holds_alternative<Diffuse>(model);
+    out.single_sided = !material.flag("doubleSided", false) && (unlit || (opaque != nullptr && opaque->transmission.value.x == 0.0F));
     out.surface.front = out.surface.back = static_cast<int>(scene_.materials.size());
     scene_.materials.push_back({std::move(model), material.text("name", "material")});
     return out;

@@ -11,7 +11,9 @@ namespace wavelobe::gltf {
 struct Appearance {
     SurfaceMaterial surface;
     std::optional<AreaEmitter> emitter;
-    std::int64_t uv_set = 0;  // of all its textures
+    bool single_sided = false;  // its back is not shown
+    bool blends = false;  // alpha, that of vertices too, says how much of it is there
+    std::vector<std::int64_t> uv_sets{};  // that its textures look up: the first, and the second
 };
 
 class Materials {
@@ -28,16 +30,17 @@ private:
     void read_emission(const Element& material, Appearance& out);
     void read_alpha(const Element& material, float factor, Appearance& out);
     MaterialModel read_model(const Element& material, Appearance& out);
-    std::optional<MaterialModel> read_transmission(const Element& material, const MetallicRoughness& surface, Appearance& out);
-    // Takes over a texture, and the set of coordinates it looks up.
-    std::shared_ptr<const Texture> take(const Element& owner, const char* name, const TextureUse& use, Appearance& out);
+    Parameter read_scalar(const Element& owner, const char* factor, double fallback, const char* texture, Transfer transfer, int channel, Appearance& out);
+    void read_layers(const Element& material, MetallicRoughness& model, Appearance& out);
+    std::optional<MaterialModel> read_volume(const Element& material, const MetallicRoughness& surface, Appearance& out);
+    // The texture that member `name` of `owner` refers to, scaled, and with it the set of coordinates it looks up.
+    std::shared_ptr<const Texture> take(const Element& owner, const char* name, Transfer transfer, Appearance& out, const Rgb& factor = Rgb(1.0F));
     void name_what_is_left_out(const Element& material);
 
     Document& document_;
     Scene& scene_;
     Textures textures_;
     std::map<std::size_t, Appearance> known_;
-    bool uv_chosen_ = false;  // by a texture of the material that is being read
 };
 
 }  // namespace wavelobe::gltf

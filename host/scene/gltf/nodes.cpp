@@ -27,6 +27,8 @@ LocalTransform NodeTree::read_local(const Element& node) {
         for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = static_cast<double>(m[static_cast<std::size_t>(i)]);
         if (matrix[0][3] != 0.0 || matrix[1][3] != 0.0 || matrix[2][3] != 0.0 || matrix[3][3] != 1.0)
             node.fault("a `matrix` whose last row is not 0 0 0 1", "glTF stores matrices column by column");
+        for (const char* name : {"translation", "rotation", "scale"})
+            if (node.has(name)) node.fault(fmt::format("has both a `matrix` and a `{}`; expected one or the other", name));
         out.matrix = matrix;
     }
     const auto t = node.vector<3>("translation", {0, 0, 0});
@@ -36,9 +38,11 @@ LocalTransform NodeTree::read_local(const Element& node) {
     out.scale = {s[0], s[1], s[2]};
     const glm::dquat rotation(r[3], r[0], r[1], r[2]);
     const double length = glm::length(rotation);
-    if (length > 0.0) out.rotation = rotation / length;
-    else node.fault("a `rotation` of length zero", "expected a unit quaternion");
+    if (std::abs(length - 1.0) < 0.05) out.rotation = rotation / length;
+    else node.fault(fmt::format("a `rotation` of length {:.4g}", length), "expected a unit quaternion");
     out.weights = node.numbers("weights");
+    for (const char* name : {"skin", "weights"})
+        if (node.has(name) && !node.has("mesh")) node.fault(fmt::format("has `{}` and no `mesh`", name));
     return out;
 }
 

@@ -16,13 +16,21 @@ void morph(Primitive& primitive, const std::vector<double>& weights) {
         for (std::size_t i = 0; i < target.positions.size(); ++i) primitive.mesh.positions[i] += weight * target.positions[i];
         for (std::size_t i = 0; i < std::min(target.normals.size(), primitive.mesh.normals.size()); ++i)
             primitive.mesh.normals[i] += weight * target.normals[i];
+        for (std::size_t i = 0; i < std::min(target.tangents.size(), primitive.tangents.size()); ++i)
+            primitive.tangents[i] += glm::vec4(weight * target.tangents[i], 0.0F);
+        for (std::size_t i = 0; i < std::min(target.colors.size(), primitive.colors.size()); ++i) primitive.colors[i] += weight * target.colors[i];
+        for (std::size_t s = 0; s < std::min(target.uv_sets.size(), primitive.uv_sets.size()); ++s)
+            for (std::size_t i = 0; i < target.uv_sets[s].size(); ++i) primitive.uv_sets[s][i] += weight * target.uv_sets[s][i];
     }
+    for (glm::vec4& color : primitive.colors) color = glm::clamp(color, 0.0F, 1.0F);
 }
 
 std::vector<glm::dmat4> joint_matrices(Document& document, const Accessors& accessors, std::size_t skin, const NodeTree& tree) {
     const Element& element = document.skins[skin];
     element.require("joints");
+    element.index("skeleton", document.nodes.size(), "nodes");
     const std::vector<std::size_t> joints = element.indices("joints", document.nodes.size(), "nodes");
+    if (joints.empty() && element.has("joints")) element.fault("has no joints; expected at least one");
     const auto index = element.index("inverseBindMatrices", accessors.size(), "accessors");
     std::vector<float> numbers;
     if (index) {
@@ -35,6 +43,12 @@ std::vector<glm::dmat4> joint_matrices(Document& document, const Accessors& acce
         numbers = accessors.floats(*index);
         if (!std::all_of(numbers.begin(), numbers.end(), [](float v) { return std::isfinite(v); })) {
             element.fault("`inverseBindMatrices` are not finite");
+            return {};
+        }
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const float* m = numbers.data() + 16 * j;
+            if (m[3] == 0.0F && m[7] == 0.0F && m[11] == 0.0F && std::abs(m[15] - 1.0F) < 1e-3F) continue;
+            element.fault(fmt::format("matrix {} of `inverseBindMatrices` has a last row of {} {} {} {}; expected 0 0 0 1", j, m[3], m[7], m[11], m[15]));
             return {};
         }
     }

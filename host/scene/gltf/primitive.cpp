@@ -38,9 +38,54 @@ std::vector<glm::uvec3> assemble(const std::vector<std::uint32_t>& order, std::i
 
 }  // namespace
 
-std::vector<float> Meshes::attribute(const Element& attributes, const char* name, std::initializer_list<const char*> types,
+Meshes::Meshes(Document& document, const Accessors& accessors) : document_(document), accessors_(accessors) {
+    for (const char* list : {"extensionsUsed", "extensionsRequired"})
+        for (const std::string& name : document.root.texts(list)) quantized_ = quantized_ || name == "KHR_mesh_quantization";
+}
+
+// Specification, section 3.7.2.1, and KHR_mesh_quantization.
+void Meshes::check_format(const Element& attributes, const std::string& name, std::size_t accessor) {
+    const Accessor& a = accessors_[accessor];
+    const bool is_float = a.component_type == 5126;
+    const bool is_unsigned = a.component_type == 5121 || a.component_type == 5123;
+    const bool is_small = is_unsigned || a.component_type == 5120 || a.component_type == 5122;
+    bool fits = is_float;
+    if (name.starts_with("JOINTS_")) fits = is_unsigned && !a.normalized;
+    else if (name.starts_with("WEIGHTS_") || name.starts_with("COLOR_")) fits = is_float || (is_unsigned && a.normalized);
+    else if (name.starts_with("TEXCOORD_")) fits = is_float || (is_unsigned && a.normalized) || (quantized_ && is_small);
+    else if (quantized_) fits = is_float || is_small;
+    if (!fits)
+        attributes.fault(fmt::format("{} is accessor {} of component type {}{}, which such an attribute may not have", name, accessor,
+                                     a.component_type, a.normalized ? ", normalized" : ""),
+                         name.starts_with("JOINTS_") ? "expected 5121 or 5123" : "expected 5126, or normalized 5121 or 5123 where these may be");
+}
+
+// Positions far outside the bounds that the file states come of damage; those a rounding outside do not.
+void Meshes::check_bounds(const Element& attributes, std::size_t accessor, const std::vector<float>& values) {
+    const Element& element = document_.accessors[accessor];
+    if (accessors_[accessor].normalized || !element.has("min") || !element.has("max")) return;
+    const std::vector<double> low = element.numbers("min");
+    const std::vector<double> high = element.numbers("max");
+    const std::size_t n = accessors_[accessor].components;
+    if (low.size() != n || high.size() != n) {
+        element.fault(fmt::format("`min` and `max` have {} and {} numbers; expected {}", low.size(), high.size(), n));
+        return;
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double least = low[i % n];
+        const double most = high[i % n];
+        const double slack = 0.01 * std::abs(most - least) + 1e-3 * std::max(std::abs(least), std::abs(most)) + 1e-6;
+        const auto value = static_cast<double>(values[i]);
+        if (value >= least - slack && value <= most + slack) continue;
+        attributes.fault(fmt::format("POSITION: element {} of accessor {} has {}, outside its `min` {} and `max` {}", i / n, accessor, value, least, most),
+                         "the buffer may be damaged");
+        return;
+    }
+}
+
+std::vector<float> Meshes::attribute(const Element& attributes, const std::string& name, std::initializer_list<const char*> types,
                                      std::size_t vertices) {
-    const auto index = attributes.index(name, accessors_.size(), "accessors");
+    const auto index = attributes.index(name.c_str(), accessors_.size(), "accessors");
     if (!index || !accessors_[*index].readable) return {};
     const Accessor& accessor = accessors_[*index];
     const bool fits = std::any_of(types.begin(), types.end(), [&](const char* type) { return accessor.type == type; });
@@ -52,7 +97,10 @@ std::vector<float> Meshes::attribute(const Element& attributes, const char* name
         attributes.fault(fmt::format("{} has {} elements, and POSITION {}", name, accessor.count, vertices));
         return {};
     }
-    std::vector<float> out = accessors_.floats(*index);
+    check_format(attributes, name, *index);
+    const bool packed = unpacked_ && unpacked_->attributes.contains(name);
+    std::vector<float> out = packed ? std::move(unpacked_->attributes.extract(name).mapped()) : accessors_.floats(*index);
+    if (name == "POSITION") check_bounds(attributes, *index, out);
     const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
     if (bad == out.end()) return out;
     attributes.fault(fmt::format("{}: element {} of accessor {} is not finite", name,
@@ -62,6 +110,7 @@ std::vector<float> Meshes::attribute(const Element& attributes, const char* name
 
 std::vector<std::uint32_t> Meshes::vertex_order(const Element& primitive, std::size_t vertices) {
     std::vector<std::uint32_t> order;
+    if (unpacked_) return std::move(unpacked_->indices);
     if (!primitive.has("indices")) {
         order.resize(vertices);
         for (std::size_t i = 0; i < vertices; ++i) order[i] = static_cast<std::uint32_t>(i);
@@ -74,6 +123,10 @@ std::vector<std::uint32_t> Meshes::vertex_order(const Element& primitive, std::s
         return {};
     }
     order = accessors_.integers(*index);
+    const int type = accessors_[*index].component_type;
+    const std::uint32_t restart = type == 5121 ? 0xffU : type == 5123 ? 0xffffU : 0xffffffffU;
+    if (const auto found = std::find(order.begin(), order.end(), restart); found != order.end() && restart < vertices)
+        primitive.fault(fmt::format("index {} of accessor {} is {}, the restart value, which glTF forbids", found - order.begin(), *index, restart));
     const auto bad = std::find_if(order.begin(), order.end(), [&](std::uint32_t v) { return v >= vertices; });
     if (bad == order.end()) return order;
     primitive.fault(fmt::format("index {} of accessor {} is {}; the primitive has {} vertices", bad - order.begin(), *index, *bad, vertices));
@@ -83,7 +136,12 @@ std::vector<std::uint32_t> Meshes::vertex_order(const Element& primitive, std::s
 void Meshes::read_triangles(const Element& primitive, Primitive& out) {
     const std::size_t vertices = out.mesh.positions.size();
     const std::int64_t mode = primitive.whole("mode", triangle_list, points, triangle_fan);
+    const bool packed = unpacked_.has_value();
     const std::vector<std::uint32_t> order = vertex_order(primitive, vertices);
+    if (packed) {
+        out.mesh.triangles = assemble(order, triangle_list);
+        return;
+    }
     if (mode == triangle_list && order.size() % 3 != 0)
         document_.warn(fmt::format("{}: {}: {} vertices are no whole number of triangles; the last are passed over", document_.file,
                                    primitive.path(), order.size()));
@@ -94,40 +152,51 @@ void Meshes::read_influences(const Element& attributes, Primitive& out) {
     for (int set = 0; set < 8; ++set) {
         const std::string joints = fmt::format("JOINTS_{}", set);
         const std::string weights = fmt::format("WEIGHTS_{}", set);
+        if (attributes.has(joints.c_str()) != attributes.has(weights.c_str()))
+            attributes.fault(fmt::format("has one of {} and {}; expected both or neither", joints, weights));
         if (!attributes.has(joints.c_str()) || !attributes.has(weights.c_str())) return;
-        Influence influence{grouped<glm::vec4>(attribute(attributes, joints.c_str(), {"VEC4"}, out.mesh.positions.size())),
-                            grouped<glm::vec4>(attribute(attributes, weights.c_str(), {"VEC4"}, out.mesh.positions.size()))};
-        for (const glm::vec4& j : influence.joints)
-            if (j.x < 0.0F || j.y < 0.0F || j.z < 0.0F || j.w < 0.0F) {
-                attributes.fault(joints + " has negative numbers");
-                return;
-            }
+        Influence influence{grouped<glm::vec4>(attribute(attributes, joints, {"VEC4"}, out.mesh.positions.size())),
+                            grouped<glm::vec4>(attribute(attributes, weights, {"VEC4"}, out.mesh.positions.size()))};
         if (!influence.joints.empty() && !influence.weights.empty()) out.influences.push_back(std::move(influence));
     }
+}
+
+std::vector<std::vector<glm::vec2>> Meshes::read_uv_sets(const Element& attributes, std::size_t vertices) {
+    std::vector<std::vector<glm::vec2>> out;
+    for (int set = 0; attributes.has(fmt::format("TEXCOORD_{}", set).c_str()); ++set)
+        out.push_back(grouped<glm::vec2>(attribute(attributes, fmt::format("TEXCOORD_{}", set), {"VEC2"}, vertices)));
+    return out;
+}
+
+std::vector<glm::vec4> Meshes::read_colors(const Element& attributes, std::size_t vertices, float alpha) {
+    const auto accessor = attributes.index("COLOR_0", accessors_.size(), "accessors");
+    const std::vector<float> numbers = attribute(attributes, "COLOR_0", {"VEC3", "VEC4"}, vertices);
+    if (!accessor || accessors_[*accessor].components == 4) return grouped<glm::vec4>(numbers);
+    std::vector<glm::vec4> out;
+    for (const glm::vec3& color : grouped<glm::vec3>(numbers)) out.emplace_back(color, alpha);
+    return out;
+}
+
+MorphTarget Meshes::read_target(const Element& target, std::size_t vertices) {
+    const auto vectors = [&](const char* name) { return grouped<glm::vec3>(attribute(target, name, {"VEC3"}, vertices)); };
+    return {vectors("POSITION"), vectors("NORMAL"), vectors("TANGENT"), read_colors(target, vertices, 0.0F), read_uv_sets(target, vertices)};
 }
 
 Primitive Meshes::read(const Element& primitive) {
     Primitive out;
     const Element attributes = primitive.object("attributes");
+    unpacked_ = unpack_draco(document_, accessors_, primitive);
     const auto in_types = [&](const char* name, std::initializer_list<const char*> types) {
         return attribute(attributes, name, types, out.mesh.positions.size());
     };
     out.mesh.positions = grouped<glm::vec3>(in_types("POSITION", {"VEC3"}));
     if (out.mesh.positions.empty()) return out;
     out.mesh.normals = grouped<glm::vec3>(in_types("NORMAL", {"VEC3"}));
-    out.mesh.uvs = grouped<glm::vec2>(in_types("TEXCOORD_0", {"VEC2"}));
-    out.second_uvs = grouped<glm::vec2>(in_types("TEXCOORD_1", {"VEC2"}));
+    out.uv_sets = read_uv_sets(attributes, out.mesh.positions.size());
     out.tangents = grouped<glm::vec4>(in_types("TANGENT", {"VEC4"}));
-    const auto color = attributes.index("COLOR_0", accessors_.size(), "accessors");
-    const std::vector<float> colors = in_types("COLOR_0", {"VEC3", "VEC4"});
-    if (color && accessors_[*color].components == 3)
-        for (const glm::vec3& c : grouped<glm::vec3>(colors)) out.colors.emplace_back(c, 1.0F);
-    else out.colors = grouped<glm::vec4>(colors);
+    out.colors = read_colors(attributes, out.mesh.positions.size(), 1.0F);
     read_influences(attributes, out);
-    for (const Element& target : primitive.objects("targets")) {
-        out.targets.push_back({grouped<glm::vec3>(attribute(target, "POSITION", {"VEC3"}, out.mesh.positions.size())),
-                               grouped<glm::vec3>(attribute(target, "NORMAL", {"VEC3"}, out.mesh.positions.size()))});
-    }
+    for (const Element& target : primitive.objects("targets")) out.targets.push_back(read_target(target, out.mesh.positions.size()));
     out.path = primitive.path();
     out.material = primitive.index("material", document_.materials.size(), "materials");
     read_triangles(primitive, out);
@@ -144,8 +213,16 @@ void Meshes::check() {
             primitive.whole("mode", triangle_list, points, triangle_fan);
             primitive.index("material", document_.materials.size(), "materials");
         }
+        check_weights(m, mesh);
         primitives(m);
     }
+}
+
+void Meshes::check_weights(std::size_t mesh, const Element& owner) {
+    const std::size_t weights = owner.numbers("weights").size();
+    std::size_t targets = 0;
+    for (const Element& primitive : document_.meshes[mesh].objects("primitives")) targets = std::max(targets, primitive.objects("targets").size());
+    if (owner.has("weights") && weights != targets) owner.fault(fmt::format("has {} `weights` for {} morph targets", weights, targets));
 }
 
 const std::vector<Primitive>& Meshes::primitives(std::size_t mesh) {

@@ -37,6 +37,11 @@ glm::mat3 transform_of(const Element& info) {
 
 }  // namespace
 
+std::int64_t uv_set_of(const Element& texture_info) {
+    const std::int64_t set = texture_info.whole("texCoord", 0, 0, 1 << 20);
+    return texture_info.extension("KHR_texture_transform").whole("texCoord", set, 0, 1 << 20);
+}
+
 void Textures::check() {
     for (const Element& sampler : document_.samplers) {
         Bitmap unused;
@@ -69,6 +74,14 @@ void Textures::check() {
 // A texture may offer other formats by extensions; the plain one is read.
 std::optional<std::size_t> Textures::image_of(const Element& texture) {
     return texture.index("source", document_.images.size(), "images");
+}
+
+// One without a plain image, by the extensions that name another.
+void Textures::warn_of_formats(const Element& texture) {
+    std::string names;
+    for (const std::string& name : texture.object("extensions").keys()) names += (names.empty() ? "" : ", ") + name;
+    document_.warn(fmt::format("{}: {}: has no PNG or JPEG image{} and is passed over", document_.file, texture.path(),
+                               names.empty() ? "" : ", only one of " + names));
 }
 
 Bitmap Textures::read_image(const Element& image, Transfer transfer) {
@@ -108,35 +121,25 @@ void Textures::set_sampler(const Element& texture, Bitmap& bitmap) {
     bitmap.row_wrap = wrap_mode(sampler, "wrapT");
 }
 
-TextureUse Textures::use(const Element& owner, const char* name, Transfer transfer) {
-    return scaled(owner, name, transfer, Rgb(1.0F));
-}
-
-TextureUse Textures::scaled(const Element& owner, const char* name, Transfer transfer, const Rgb& factor) {
-    TextureUse out;
-    const Element info = owner.object(name);
-    if (!info.present()) return out;
+std::shared_ptr<const Texture> Textures::use(const Element& info, Transfer transfer, const Rgb& factor, bool second_uvs) {
+    if (!info.present()) return nullptr;
     info.require("index");
     const auto index = info.index("index", document_.textures.size(), "textures");
-    out.uv_set = info.whole("texCoord", 0, 0, 1 << 20);
-    const Element transform = info.extension("KHR_texture_transform");
-    out.uv_set = transform.whole("texCoord", out.uv_set, 0, 1 << 20);
-    if (!index) return out;
+    if (!index) return nullptr;
     const auto source = image_of(document_.textures[*index]);
     if (!source) {
-        if (!document_.textures[*index].has("source"))
-            document_.warn(fmt::format("{}: {}: has no image of a supported format and is passed over", document_.file,
-                                       document_.textures[*index].path()));
-        return out;
+        if (!document_.textures[*index].has("source")) warn_of_formats(document_.textures[*index]);
+        return nullptr;
     }
     const glm::mat3 to_uv = transform_of(info);
     std::string key;
     for (int i = 0; i < 9; ++i) key += fmt::format("{} ", to_uv[i / 3][i % 3]);
     for (int i = 0; i < 3; ++i) key += fmt::format("{} ", factor[i]);
+    if (second_uvs) key += "second";
     std::shared_ptr<const Texture>& known = textures_[{*index, transfer, key}];
     if (!known) {
         const Bitmap* bitmap = image(*source, transfer);
-        if (bitmap == nullptr) return out;
+        if (bitmap == nullptr) return nullptr;
         auto texture = std::make_shared<Texture>();
         Bitmap copy = *bitmap;
         if (factor != Rgb(1.0F))
@@ -144,11 +147,11 @@ TextureUse Textures::scaled(const Element& owner, const char* name, Transfer tra
         set_sampler(document_.textures[*index], copy);
         texture->source = std::move(copy);
         texture->to_uv = to_uv;
+        texture->second_uvs = second_uvs;
         texture->name = document_.images[*source].text("name", fmt::format("image {}", *source));
         known = std::move(texture);
     }
-    out.texture = known;
-    return out;
+    return known;
 }
 
 }  // namespace wavelobe::gltf

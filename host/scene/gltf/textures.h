@@ -11,11 +11,8 @@
 
 namespace wavelobe::gltf {
 
-// A reference to a texture, as a material has it.
-struct TextureUse {
-    std::shared_ptr<const Texture> texture;  // null: none, or a faulty one
-    std::int64_t uv_set = 0;
-};
+// The set of coordinates that a reference to a texture looks up.
+std::int64_t uv_set_of(const Element& texture_info);
 
 class Textures {
 public:
@@ -23,20 +20,20 @@ public:
 
     // Checks all textures, samplers and images but the contents of images that nothing uses.
     void check();
-    // The texture that member `name` of `owner` names. Each image is read once for each use of its channels.
-    TextureUse use(const Element& owner, const char* name, Transfer transfer);
-    // The same, each texel scaled.
-    TextureUse scaled(const Element& owner, const char* name, Transfer transfer, const Rgb& factor);
+    // The texture of a reference, each texel scaled; null where there is none, or a faulty one. Each image is read once for each
+    // use of its channels.
+    std::shared_ptr<const Texture> use(const Element& texture_info, Transfer transfer, const Rgb& factor, bool second_uvs);
 
 private:
     std::optional<std::size_t> image_of(const Element& texture);
     const Bitmap* image(std::size_t index, Transfer transfer);
+    void warn_of_formats(const Element& texture);
     Bitmap read_image(const Element& image, Transfer transfer);
     void set_sampler(const Element& texture, Bitmap& bitmap);
 
     Document& document_;
     std::map<std::pair<std::size_t, Transfer>, std::unique_ptr<Bitmap>> images_;
-    // By texture, use and transform.
+    // By texture, use, transform, factor and set of coordinates.
     std::map<std::tuple<std::size_t, Transfer, std::string>, std::shared_ptr<const Texture>> textures_;
 };
 

@@ -1,0 +1,70 @@
+// glTF's metallic-roughness material with layers: reflection off its coat, its dielectric and its metal, and what passes it as
+// if through a thin wall, spread by the same microfacets.
+#ifndef WAVELOBE_BSDF_LAYERED_METALLIC_ROUGHNESS_H
+#define WAVELOBE_BSDF_LAYERED_METALLIC_ROUGHNESS_H
+
+#include "bsdf/layered_parameters.h"
+
+typedef struct {
+    Layered layers;
+} LayeredMetallicRoughnessLobe;
+
+INLINE LayeredMetallicRoughnessLobe layered_metallic_roughness_load(MaterialInput in) {
+    LayeredMetallicRoughnessLobe l = {load_layered(in)};
+    return l;
+}
+
+// Relative chances of the three ways on.
+typedef struct {
+    Float coat, surface, through;
+} LayerWeights;
+
+INLINE LayerWeights layer_weights(Layered l, Float cosine) {
+    LayerWeights w;
+    w.coat = coat_reflectance(l, cosine);
+    w.surface = (1.0f - w.coat) * max_component(metallic_roughness_fresnel(l.material, cosine));
+    w.through = l.transmission * base_share(l, cosine) * max_component(l.material.base);
+    return w;
+}
+
+INLINE Float layered_metallic_roughness_weight(LayeredMetallicRoughnessLobe l, Vec3 wi) {
+    LayerWeights w = layer_weights(l.layers, fabs(wi.z));
+    return w.coat + w.surface + w.through;
+}
+
+INLINE LobeValue layered_metallic_roughness_eval(LayeredMetallicRoughnessLobe lobe, Vec3 wi, Vec3 wo) {
+    Layered l = lobe.layers;
+    Int turned = turned_over(l, wi);
+    wi = turn_where(turned, wi);
+    wo = turn_where(turned, wo);
+    Int through = l.two_sided & (wo.z < 0.0f);
+    wo = turn_where(through, wo);
+    LayerWeights w = layer_weights(l, wi.z);
+    Float all = w.coat + w.surface + w.through;
+    Float inverse = SELECT(all > 0.0f, 1.0f / all, ZERO);
+    MicrofacetReflection surface = microfacet_reflection(l.microfacets, wi, wo);
+    MicrofacetReflection coat = microfacet_reflection(l.coat_microfacets, wi, wo);
+
+    Rgb reflected = scale(metallic_roughness_fresnel(l.material, surface.cos_m), (1.0f - coat_reflectance(l, surface.cos_m)) * surface.value);
+    Float off_coat = coat_reflectance(l, surface.cos_m) * coat.value;
+    Rgb passed = scale(l.material.base, l.transmission * base_share(l, surface.cos_m) * surface.value);
+    Rgb value = select3(through, passed, vec3(reflected.x + off_coat, reflected.y + off_coat, reflected.z + off_coat));
+    Float pdf = SELECT(through, w.through * surface.pdf, madd(w.surface, surface.pdf, w.coat * coat.pdf));
+    return lobe_value_where(surface.visible & (all > 0.0f), value, inverse * pdf);
+}
+
+INLINE Vec3 layered_metallic_roughness_sample(LayeredMetallicRoughnessLobe lobe, Vec3 wi, Float u1, Float u2, Float u3) {
+    Layered l = lobe.layers;
+    Int turned = turned_over(l, wi);
+    wi = turn_where(turned, wi);
+    LayerWeights w = layer_weights(l, wi.z);
+    Float at = u3 * (w.coat + w.surface + w.through);
+    Int coat = at < w.coat;
+    Int through = !coat & !(at < w.coat + w.surface) & (w.through > 0.0f);
+    Microfacets d = l.microfacets;
+    d.alpha_u = d.alpha_v = SELECT(coat, l.coat_microfacets.alpha_u, d.alpha_u);
+    Vec3 wo = sample_microfacet_reflection(d, wi, u1, u2);
+    return turn_where(turned, turn_where(through, wo));
+}
+
+#endif

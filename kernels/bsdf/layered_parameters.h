@@ -1,0 +1,62 @@
+// Layers on and in glTF's metallic-roughness material: a clear coat over it (KHR_materials_clearcoat), a share of its base that
+// lets light through instead of scattering it (KHR_materials_transmission, thin walls), and textures of its dielectric's
+// reflectance (KHR_materials_specular). Khronos Group 2020-2021. Both lobes of such a material read them.
+//
+// Deviations, which make the material reciprocal: the coat's Fresnel term is taken at the half vector, as that of the
+// dielectric below it is, not at the normal.
+#ifndef WAVELOBE_BSDF_LAYERED_PARAMETERS_H
+#define WAVELOBE_BSDF_LAYERED_PARAMETERS_H
+
+#include "bsdf/metallic_roughness.h"
+
+typedef struct {
+    MetallicRoughness material;
+    Microfacets microfacets, coat_microfacets;
+    Float coat;         // share of the surface under the coat
+    Float transmission; // share of the base that lets light through
+    Int two_sided;      // light passes, and both sides are alike
+} Layered;
+
+INLINE Microfacets rough_microfacets(Float roughness) {
+    Microfacets d;
+    d.alpha_u = d.alpha_v = GREATER(roughness * roughness, (Float)MIN_ALPHA);
+    d.beckmann = !TRUE_MASK;
+    return d;
+}
+
+INLINE Float unit_share(Float x) { return LESSER(GREATER(x, ZERO), ONE); }
+
+INLINE Layered load_layered(MaterialInput in) {
+    Layered l;
+    l.material = load_metallic_roughness(in);
+    l.microfacets = rough_microfacets(load_scaled_float(in, alpha_u));
+    l.two_sided = (load_flags(in) & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u;
+    MaterialInput layers = extension_of(in);
+    l.coat = unit_share(load_extension_float(layers, MetallicRoughnessLayers, coat));
+    l.coat_microfacets = rough_microfacets(load_extension_float(layers, MetallicRoughnessLayers, coat_roughness));
+    l.transmission = unit_share(load_extension_float(layers, MetallicRoughnessLayers, transmission));
+    Float specular = unit_share(load_extension_float(layers, MetallicRoughnessLayers, specular));
+    Rgb f0 = load_extension_rgb(layers, MetallicRoughnessLayers, specular_color);
+    l.material.f0 = vec3(LESSER(f0.x, ONE) * specular, LESSER(f0.y, ONE) * specular, LESSER(f0.z, ONE) * specular);
+    l.material.f90 = specular;
+    return l;
+}
+
+// What the coat, of index 1.5, reflects where its microfacets meet the light at that cosine.
+INLINE Float coat_reflectance(Layered l, Float cosine) { return l.coat * madd((Float)0.96f, schlick_weight(cosine), (Float)0.04f); }
+
+// Share of the light that reaches the base of the dielectric, by the cosine on the half vector; towards grazing incidence
+// without differences of nearly equal numbers.
+INLINE Float base_share(Layered l, Float cosine) {
+    Float c = LESSER(fabs(cosine), ONE);
+    Float weight = schlick_weight(c);
+    Float rest = c * madd(c, madd(c, madd(c, c - 5.0f, (Float)10.0f), (Float)-10.0f), (Float)5.0f); // 1 - weight
+    Float passed = madd(1.0f - max_component(l.material.f0), rest, (1.0f - l.material.f90) * weight);
+    return madd(0.96f * l.coat, rest, 1.0f - l.coat) * (1.0f - l.material.metallic) * passed;
+}
+
+// Seen from above: a two-sided surface is turned over where `wi` is below it.
+INLINE Int turned_over(Layered l, Vec3 wi) { return l.two_sided & (wi.z < 0.0f); }
+INLINE Vec3 turn_where(Int turned, Vec3 v) { return vec3(v.x, v.y, SELECT(turned, -v.z, v.z)); }
+
+#endif
