@@ -115,12 +115,43 @@ private:
         if (prepared.mesh.triangles.empty()) return;
         prepared.mesh.second_uvs = coordinates(1);
         add_colors(primitive, appearance, prepared.mesh);
-        if (appearance.single_sided) single_sided_.push_back(scene_.shapes.size());
-        Shape& shape = scene_.shapes.emplace_back();
-        shape.geometry = std::move(prepared.mesh);
+        Shape shape;
         shape.material = appearance.surface;
         shape.emitter = appearance.emitter;
         shape.name = name;
+        if (appearance.has_normal_map) {
+            // The bitangent of a normal map goes with the winding of the texture coordinates.
+            TriangleMesh other = split_mirrored(prepared.mesh);
+            if (!other.triangles.empty()) {
+                Shape half = shape;
+                half.material = materials_.mirrored(primitive.material);
+                add_whole(std::move(half), std::move(other), appearance);
+            }
+        }
+        if (!prepared.mesh.triangles.empty()) add_whole(std::move(shape), std::move(prepared.mesh), appearance);
+    }
+
+    void add_whole(Shape shape, TriangleMesh mesh, const Appearance& appearance) {
+        if (appearance.single_sided) single_sided_.push_back(scene_.shapes.size());
+        shape.geometry = std::move(mesh);
+        scene_.shapes.push_back(std::move(shape));
+    }
+
+    // Takes the triangles whose texture coordinates run the other way round out of a mesh. Those of an image go down: seen from
+    // the front, triangles that are not mirrored turn against them.
+    static TriangleMesh split_mirrored(TriangleMesh& mesh) {
+        if (mesh.uvs.empty()) return {};
+        const auto turns_against = [&](const glm::uvec3& t) {
+            const glm::dvec2 a = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
+            const glm::dvec2 b = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
+            return a.x * b.y - a.y * b.x <= 0.0;
+        };
+        const auto middle = std::stable_partition(mesh.triangles.begin(), mesh.triangles.end(), turns_against);
+        if (middle == mesh.triangles.end()) return {};
+        TriangleMesh other = mesh;
+        other.triangles.assign(middle, mesh.triangles.end());
+        mesh.triangles.erase(middle, mesh.triangles.end());
+        return other;
     }
 
     static void add_colors(const Primitive& primitive, const Appearance& appearance, TriangleMesh& mesh) {

@@ -146,6 +146,31 @@ TEST(GltfMaterials, BacksOfSingleSidedSurfaces) {
     EXPECT_TRUE(clear(false, corners, inwards));
 }
 
+// Of two triangles the second has mirrored coordinates: its green is turned over.
+TEST(GltfMaterials, NormalMaps) {
+    MaterialFile file(Json{{"normalTexture", {{"index", 0}, {"texCoord", 1}, {"scale", 0.5}}},
+                           {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    file.json["meshes"] = Json::array();
+    Json& primitive = file.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1});
+    primitive["material"] = 0;
+    primitive["attributes"]["TEXCOORD_0"] = file.add_floats(std::vector<float>(12, 0.0F), "VEC2", 2);
+    primitive["attributes"]["TEXCOORD_1"] = file.add_floats({0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1, 0}, "VEC2", 2);
+    file.json["textures"] = Json::array({{{"source", 0}}});
+    file.json["images"] = Json::array({image_of(Rgb(0.0F, 1.0F, 1.0F))});
+    const Scene scene = file.read();
+    ASSERT_EQ(scene.shapes.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto& map = std::get<NormalMapped>(scene.materials.at(static_cast<std::size_t>(scene.shapes[i].material.front)).model);
+        const bool mirrored = mesh_of(scene, i).triangles.at(0).x >= 3;
+        EXPECT_EQ(map.scale, 0.5F);
+        EXPECT_FALSE(map.normals.texture->second_uvs);
+        EXPECT_EQ(mesh_of(scene, i).uvs[1], glm::vec2(1, 1));
+        EXPECT_EQ(std::get<Bitmap>(map.normals.texture->source).rgb, (std::vector<float>{0, mirrored ? 0.0F : 1.0F, 1}));
+        const auto& sides = std::get<TwoSided>(map.nested->model);
+        EXPECT_TRUE(std::get<MetallicRoughness>(sides.front->model).base_color.texture->second_uvs);
+    }
+}
+
 // What blends is no lamp to sample; what has two sides shines on both.
 TEST(GltfMaterials, EmissionOfBlendedAndTwoSidedSurfaces) {
     const auto emitter = [](const Json& more) {

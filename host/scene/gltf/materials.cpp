@@ -154,11 +154,6 @@ void Materials::name_what_is_left_out(const Element& material) {
     for (const char* name : {"KHR_materials_sheen", "KHR_materials_anisotropy"})
         if (material.extension(name).present())
             document_.warn(fmt::format("{}: {}: {} is passed over", document_.file, material.path(), name));
-    const Element normal = material.object("normalTexture");
-    if (normal.present()) {
-        normal.index("index", document_.textures.size(), "textures");
-        document_.warn(fmt::format("{}: {}: the normal map is passed over", document_.file, material.path()));
-    }
     const Element occlusion = material.object("occlusionTexture");
     if (occlusion.present()) {
         occlusion.index("index", document_.textures.size(), "textures");
@@ -166,8 +161,23 @@ void Materials::name_what_is_left_out(const Element& material) {
     }
 }
 
+// Its tangents follow the first set of coordinates, so it takes its own before all others do.
+NormalMapped Materials::read_normal_map(const Element& material, Appearance& out) {
+    NormalMapped map;
+    map.normals.texture = take(material, "normalTexture", Transfer::linear, out);
+    map.scale = static_cast<float>(material.object("normalTexture").number("scale", 1.0));
+    map.perturbation.soften_terminator = false;
+    return map;
+}
+
+int Materials::add(MaterialModel model, const std::string& name) {
+    scene_.materials.push_back({std::move(model), name});
+    return static_cast<int>(scene_.materials.size()) - 1;
+}
+
 Appearance Materials::read(const Element& material) {
     Appearance out;
+    NormalMapped map = read_normal_map(material, out);
     MaterialModel model = read_model(material, out);
     if (!material.extension("KHR_materials_unlit").present()) read_emission(material, out);
     name_what_is_left_out(material);
@@ -175,9 +185,30 @@ Appearance Materials::read(const Element& material) {
     const auto* opaque = std::get_if<MetallicRoughness>(&model);
     const bool unlit = std::holds_alternative<Diffuse>(model);
     out.single_sided = !material.flag("doubleSided", false) && (unlit || (opaque != nullptr && opaque->transmission.value.x == 0.0F));
-    out.surface.front = out.surface.back = static_cast<int>(scene_.materials.size());
-    scene_.materials.push_back({std::move(model), material.text("name", "material")});
+    const std::string name = material.text("name", "material");
+    out.has_normal_map = map.normals.texture != nullptr && !unlit;
+    if (out.has_normal_map) {
+        // Maps keep their frame when seen from behind; two sides inside turn it.
+        const bool transmits = opaque == nullptr || opaque->transmission.value.x > 0.0F;
+        map.nested = std::make_shared<Material>(Material{std::move(model), name});
+        if (!transmits) map.nested = std::make_shared<Material>(Material{TwoSided{map.nested, map.nested}, name});
+        model = std::move(map);
+    }
+    out.surface.front = out.surface.back = add(std::move(model), name);
     return out;
+}
+
+const SurfaceMaterial& Materials::mirrored(std::optional<std::size_t> material) {
+    const auto [found, added] = mirrored_.try_emplace(material.value_or(default_material), appearance(material).surface);
+    if (!added) return found->second;
+    const Material& straight = scene_.materials[static_cast<std::size_t>(found->second.front)];
+    NormalMapped map = std::get<NormalMapped>(straight.model);
+    auto texture = std::make_shared<Texture>(*map.normals.texture);
+    std::vector<float>& rgb = std::get<Bitmap>(texture->source).rgb;
+    for (std::size_t i = 1; i < rgb.size(); i += 3) rgb[i] = 1.0F - rgb[i];
+    map.normals.texture = std::move(texture);
+    found->second.front = found->second.back = add(std::move(map), std::string(straight.name));
+    return found->second;
 }
 
 void Materials::check() {

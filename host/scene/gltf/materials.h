@@ -11,6 +11,7 @@ namespace wavelobe::gltf {
 struct Appearance {
     SurfaceMaterial surface;
     std::optional<AreaEmitter> emitter;
+    bool has_normal_map = false;
     bool single_sided = false;  // its back is not shown
     bool blends = false;  // alpha, that of vertices too, says how much of it is there
     std::vector<std::int64_t> uv_sets{};  // that its textures look up: the first, and the second
@@ -25,8 +26,13 @@ public:
     // The material of that number, or the specification's default.
     const Appearance& appearance(std::optional<std::size_t> material);
 
+    // What triangles with mirrored texture coordinates show of a material with a normal map: its green turned over.
+    const SurfaceMaterial& mirrored(std::optional<std::size_t> material);
+
 private:
     Appearance read(const Element& material);
+    NormalMapped read_normal_map(const Element& material, Appearance& out);
+    int add(MaterialModel model, const std::string& name);
     void read_emission(const Element& material, Appearance& out);
     void read_alpha(const Element& material, float factor, Appearance& out);
     MaterialModel read_model(const Element& material, Appearance& out);
@@ -41,6 +47,7 @@ private:
     Scene& scene_;
     Textures textures_;
     std::map<std::size_t, Appearance> known_;
+    std::map<std::size_t, SurfaceMaterial> mirrored_;
 };
 
 }  // namespace wavelobe::gltf
