@@ -31,12 +31,15 @@ INLINE Layered load_layered(MaterialInput in) {
     l.material = load_metallic_roughness(in);
     l.microfacets = rough_microfacets(load_scaled_float(in, alpha_u));
     l.two_sided = (load_flags(in) & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u;
+#if HAS_TEXTURES
+    Int there = (as_UInt(load_constant(in, lobes)) & (UInt)(1u << LOBE_LAYERED_METALLIC_ROUGHNESS)) != (UInt)0u;
+#endif
     MaterialInput layers = extension_of(in);
-    l.coat = unit_share(load_extension_float(layers, MetallicRoughnessLayers, coat));
-    l.coat_microfacets = rough_microfacets(load_extension_float(layers, MetallicRoughnessLayers, coat_roughness));
-    l.transmission = unit_share(load_extension_float(layers, MetallicRoughnessLayers, transmission));
-    Float specular = unit_share(load_extension_float(layers, MetallicRoughnessLayers, specular));
-    Rgb f0 = load_extension_rgb(layers, MetallicRoughnessLayers, specular_color);
+    l.coat = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, coat));
+    l.coat_microfacets = rough_microfacets(load_extension_float(layers, there, MetallicRoughnessLayers, coat_roughness));
+    l.transmission = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, transmission));
+    Float specular = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, specular));
+    Rgb f0 = load_extension_rgb(layers, there, MetallicRoughnessLayers, specular_color);
     l.material.f0 = vec3(LESSER(f0.x, ONE) * specular, LESSER(f0.y, ONE) * specular, LESSER(f0.z, ONE) * specular);
     l.material.f90 = specular;
     return l;

@@ -79,8 +79,8 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 #define load_float(in, field) constant_float(in, WORD_OFFSET(Material, field))
 #define load_scaled_rgb(in, field) load_rgb(in, field)
 #define load_scaled_float(in, field) load_float(in, field)
-#define load_extension_rgb(in, type, field) constant_rgb(in, WORD_OFFSET(type, field))
-#define load_extension_float(in, type, field) constant_float(in, WORD_OFFSET(type, field))
+#define load_extension_rgb(in, there, type, field) constant_rgb(in, WORD_OFFSET(type, field))
+#define load_extension_float(in, there, type, field) constant_float(in, WORD_OFFSET(type, field))
 #endif
 
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))

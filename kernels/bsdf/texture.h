@@ -210,7 +210,25 @@ INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
 #define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 0)
 #define load_scaled_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 1)
 #define load_scaled_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 1)
-#define load_extension_rgb(in, type, field) parameter_rgb(in, WORD_OFFSET(type, field), 1)
-#define load_extension_float(in, type, field) parameter_float(in, WORD_OFFSET(type, field), 1)
+
+// Parameters of an extension, in the lanes whose material has it: what lies there of others names no texture.
+INLINE Rgb extension_rgb(MaterialInput in, Int there, uint offset) {
+    Rgb value = constant_rgb(in, offset);
+    UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedRgb, texture)));
+    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
+    if (any_lane(textured)) value = select3(textured, mul(value, looked_up_rgb(in, texture, textured)), value);
+    return value;
+}
+
+INLINE Float extension_float(MaterialInput in, Int there, uint offset) {
+    Float value = constant_float(in, offset);
+    UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedFloat, texture)));
+    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
+    if (any_lane(textured)) value = SELECT(textured, value * looked_up_float(in, texture, textured), value);
+    return value;
+}
+
+#define load_extension_rgb(in, there, type, field) extension_rgb(in, there, WORD_OFFSET(type, field))
+#define load_extension_float(in, there, type, field) extension_float(in, there, WORD_OFFSET(type, field))
 
 #endif
