@@ -21,6 +21,7 @@ std::uint64_t bytes_of(const std::vector<T>& values) {
 // Marks the primitives whose opacity rays ask for.
 void mark_masked(Bvh& bvh, const DeviceScene& scene) {
     const auto mark = [&scene](std::uint32_t& entry, std::size_t primitive) {
+        if (entry == HIT_NONE) return;  // no triangle: a block has room for more than it holds
         const DeviceShape& shape = scene.shapes[scene.primitive_shapes[primitive]];
         if ((shape.flags & SHAPE_MASKED) != 0) entry |= PRIMITIVE_MASKED;
     };
