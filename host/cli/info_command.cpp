@@ -19,7 +19,7 @@ constexpr std::array material_names{"diffuse",       "conductor",       "roughco
                                     "thindielectric", "roughdielectric", "plastic",        "roughplastic",   "phong",
                                     "metallicroughness", "normalmap", "bumpmap", "twosided", "blendbsdf"};
 static_assert(material_names.size() == std::variant_size_v<MaterialModel>);
-constexpr std::array emitter_names{"constant", "envmap", "point", "spot", "directional"};
+constexpr std::array emitter_names{"constant", "envmap", "point", "spot", "directional", "projector"};
 static_assert(emitter_names.size() == std::variant_size_v<Emitter>);
 
 const char* filter_name(ReconstructionFilter::Kind kind) {
@@ -48,10 +48,15 @@ std::string describe(const Film& film) {
     return text;
 }
 
-std::string describe(const PerspectiveCamera& camera) {
+std::string describe(const Camera& camera) {
     const glm::vec4 position = camera.to_world[3];
-    return fmt::format("perspective, {:.4g} degrees across, at ({:.4g}, {:.4g}, {:.4g})", camera.fov_x_degrees, position.x,
-                       position.y, position.z);
+    const std::string at = fmt::format("at ({:.4g}, {:.4g}, {:.4g})", position.x, position.y, position.z);
+    if (camera.projection == Camera::Projection::orthographic)
+        return fmt::format("orthographic, {:.4g} across, {}", 2.0F * glm::length(glm::vec3(camera.to_world[0])), at);
+    std::string text = fmt::format("perspective, {:.4g} degrees across, {}", camera.fov_x_degrees, at);
+    if (camera.aperture_radius > 0.0F)
+        text += fmt::format(", lens of radius {:.4g} focused at {:.4g}", camera.aperture_radius, camera.focus_distance);
+    return text;
 }
 
 std::string describe(const Integrator& integrator) {

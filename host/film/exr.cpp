@@ -47,22 +47,29 @@ Imath::M44f imath(const glm::dmat4& matrix) {
 
 }  // namespace
 
-glm::dmat4 world_to_camera(const PerspectiveCamera& camera) {
+glm::dmat4 world_to_camera(const Camera& camera) {
     const glm::dmat4 to_local = glm::inverse(glm::dmat4(camera.to_world));
     glm::dmat4 mirror(1.0);  // the scene's cameras have +x to the left
     mirror[0][0] = -1.0;
     return mirror * to_local;
 }
 
-glm::dmat4 world_to_ndc(const PerspectiveCamera& camera, const Film& film) {
-    const double cotangent = 1.0 / std::tan(0.5 * camera.fov_x_degrees * (3.14159265358979323846 / 180.0));
+glm::dmat4 world_to_ndc(const Camera& camera, const Film& film) {
+    const bool orthographic = camera.projection == Camera::Projection::orthographic;
+    const double cotangent = orthographic ? 1.0 : 1.0 / std::tan(0.5 * camera.fov_x_degrees * (3.14159265358979323846 / 180.0));
     const double aspect = static_cast<double>(film.width) / film.height;
     const double near_clip = camera.near_clip;
     const double far_clip = camera.far_clip;
-    glm::dmat4 projection(0.0);  // [column][row]; the fourth row copies z to divide by
+    glm::dmat4 projection(0.0);  // [column][row]
     projection[0][0] = 0.5 * cotangent;
-    projection[2][0] = 0.5 - camera.principal_point_offset.x;
     projection[1][1] = -0.5 * aspect * cotangent;
+    if (orthographic) {
+        projection[3] = {0.5, 0.5, -near_clip / (far_clip - near_clip), 1.0};
+        projection[2][2] = 1.0 / (far_clip - near_clip);
+        return projection * world_to_camera(camera);
+    }
+    // The fourth row copies z to divide by.
+    projection[2][0] = 0.5 - camera.principal_point_offset.x;
     projection[2][1] = 0.5 - camera.principal_point_offset.y;
     projection[2][2] = far_clip / (far_clip - near_clip);
     projection[3][2] = -near_clip * far_clip / (far_clip - near_clip);
@@ -70,7 +77,7 @@ glm::dmat4 world_to_ndc(const PerspectiveCamera& camera, const Film& film) {
     return projection * world_to_camera(camera);
 }
 
-std::string encode_exr(const Image& image, const Film& film, const PerspectiveCamera& camera, const PictureNotes& notes) {
+std::string encode_exr(const Image& image, const Film& film, const Camera& camera, const PictureNotes& notes) {
     const Imath::Box2i display({0, 0}, {film.width - 1, film.height - 1});
     const Imath::Box2i data({film.crop_x, film.crop_y}, {film.crop_x + image.width - 1, film.crop_y + image.height - 1});
     Imf::Header header(display, data);
@@ -92,6 +99,11 @@ std::string encode_exr(const Image& image, const Film& film, const PerspectiveCa
         header.channels().insert(names[i], Imf::Channel(Imf::FLOAT));
         // The library only reads through this pointer.
         frame.insert(names[i], Imf::Slice::Make(Imf::FLOAT, image.rgb.data() + i, data, pixel_bytes, row_bytes));
+    }
+    for (const ImageChannel& channel : image.channels) {
+        header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+        frame.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), data, sizeof(float),
+                                                    sizeof(float) * static_cast<std::size_t>(image.width)));
     }
     MemoryStream stream;
     {

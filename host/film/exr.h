@@ -18,14 +18,14 @@ struct PictureNotes {
     double seconds = 0.0;  // of rendering
 };
 
-// The file's bytes: linear RGB as 32-bit floats, ZIP-compressed, the data window being the crop window within the
+// The file's bytes: linear RGB and the picture's further channels as 32-bit floats, ZIP-compressed, the data window being the crop window within the
 // film's display window. Attributes: `software`, `worldToCamera` and `worldToNDC` as the OpenEXR library defines them
 // (row vectors; camera space with x right, y up, z forward), and `wavelobe.scene`, `.spp`, `.samples`, `.seed`, `.seconds`.
-std::string encode_exr(const Image& image, const Film& film, const PerspectiveCamera& camera, const PictureNotes& notes);
+std::string encode_exr(const Image& image, const Film& film, const Camera& camera, const PictureNotes& notes);
 
 // The matrices of those attributes for column vectors.
-glm::dmat4 world_to_camera(const PerspectiveCamera& camera);
+glm::dmat4 world_to_camera(const Camera& camera);
 // (0, 0) is the upper left corner of the film, (1, 1) the lower right one.
-glm::dmat4 world_to_ndc(const PerspectiveCamera& camera, const Film& film);
+glm::dmat4 world_to_ndc(const Camera& camera, const Film& film);
 
 }  // namespace wavelobe

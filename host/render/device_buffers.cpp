@@ -61,8 +61,9 @@ Bvh build_scene_bvh(DeviceScene& scene, int threads) {
 }
 
 std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
-    const std::uint64_t film =
-        std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height * sizeof(FilmPixel);
+    const std::size_t sums = scene.features.layer_channels() + (scene.features.moments ? MOMENT_CHANNELS : 0);
+    const std::uint64_t film = std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height *
+                               (sizeof(FilmPixel) + sums * sizeof(double));
     return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
            bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.colors) +
            bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
@@ -110,6 +111,11 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
     add_zeros<FilmPixel>("film", pixels * (scene.features.error_estimate ? 2 : 1));
+    if (scene.features.layers != 0) {
+        add_zeros<double>("layer_film", pixels * scene.features.layer_channels());
+        add("layer_shapes", scene.layer_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.layer_shapes);
+    }
+    if (scene.features.moments) add_zeros<double>("moment_film", pixels * MOMENT_CHANNELS);
 }
 
 void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {

@@ -35,6 +35,18 @@ constexpr std::array<LightEntry, LIGHT_KIND_COUNT> light_list = {{
 #undef LIGHT
 }};
 
+struct LayerEntry {
+    const char* name;
+    const char* macro;
+    std::size_t width;
+};
+
+constexpr std::array<LayerEntry, LAYER_COUNT> layer_list = {{
+#define LAYER(name, NAME, width) {#name, #NAME, width},
+#include "layers/layers.def"
+#undef LAYER
+}};
+
 struct StageEntry {
     const char* name;
     const char* macro;
@@ -62,6 +74,9 @@ public:
     void include(const std::string& path) { text_ << "#include \"" << path << "\"\n"; }
     void begin_list(const std::string& name) { text_ << "#define " << name << "(X)"; }
     void list_item(const char* name, const char* macro) { text_ << " X(" << name << ", " << macro << ")"; }
+    void list_item(const char* name, const char* macro, std::size_t width) {
+        text_ << " X(" << name << ", " << macro << ", " << width << "u)";
+    }
     void end_list() { text_ << "\n"; }
     void line(const std::string& text) { text_ << text << "\n"; }
     std::string text() const { return text_.str(); }
@@ -97,6 +112,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);
     out.define("HAS_BECKMANN", f.beckmann);
+    out.define("HAS_ORTHOGRAPHIC", f.orthographic);
+    out.define("HAS_THIN_LENS", f.thin_lens);
     out.define("HAS_SIGNED_FILTER", f.signed_filter);
     out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
     out.define("HIDE_EMITTERS", f.hide_emitters);
@@ -163,7 +180,35 @@ void write_lights(SourceWriter& out, const FeatureSet& f) {
     write_light_list(out, f, "SCENE_ENVIRONMENT_LIGHTS", &environment);
 }
 
+void write_layers(SourceWriter& out, const FeatureSet& f) {
+    out.define("HAS_LAYERS", f.layers != 0);
+    out.define("HAS_MOMENTS", f.moments);
+    if (f.layers == 0) return;
+    constexpr std::uint32_t differential = 1U << LAYER_DP_DU | 1U << LAYER_DP_DV | 1U << LAYER_DUV_DX | 1U << LAYER_DUV_DY;
+    out.define("HAS_LAYER_PARTIALS", (f.layers & differential) != 0);
+    out.define("HAS_LAYER_COVERAGE", has_bit(f.layers, LAYER_COVERAGE));
+    out.define("HAS_LAYER_SQUARES", f.layer_squares);
+    out.define_unsigned("LAYER_CHANNELS", static_cast<long>(f.layer_channels()));
+    out.begin_list("SCENE_LAYERS");
+    for (std::size_t i = 0; i < layer_list.size(); ++i) {
+        if (has_bit(f.layers, i)) out.list_item(layer_list[i].name, layer_list[i].macro, layer_list[i].width);
+    }
+    out.end_list();
+}
+
 }  // namespace
+
+std::size_t FeatureSet::layer_offset(std::uint32_t layer, bool squared) const {
+    std::size_t before = 0, all = 0;
+    for (std::size_t i = 0; i < layer_list.size(); ++i) {
+        if (!has_bit(layers, i)) continue;
+        if (i < layer) before += layer_list[i].width;
+        all += layer_list[i].width;
+    }
+    return 1 + before + (squared ? all : 0);
+}
+
+std::size_t FeatureSet::layer_channels() const { return layers == 0 ? 0 : layer_offset(LAYER_COUNT, layer_squares); }
 
 std::uint32_t lobe_class(std::uint32_t lobe) { return lobe_list[lobe].lobe_class; }
 
@@ -188,6 +233,10 @@ std::vector<std::string> FeatureSet::names() const {
     const auto add = [&out](bool present, const char* name) {
         if (present) out.emplace_back(name);
     };
+    for (std::size_t i = 0; i < layer_list.size(); ++i) {
+        if (has_bit(layers, i)) out.push_back(std::string("layer:") + layer_list[i].name);
+    }
+    add(moments, "moments");
     add(light_count > 1, "light_choice");
     add(textures, "textures");
     add(textured_emitters, "textured_emitters");
@@ -211,6 +260,8 @@ std::vector<std::string> FeatureSet::names() const {
     add(ggx, "ggx");
     add(beckmann, "beckmann");
     add(hide_emitters, "hide_emitters");
+    add(orthographic, "orthographic");
+    add(thin_lens, "thin_lens");
     add(signed_filter, "signed_filter");
     add(error_estimate, "error_estimate");
     add(masks, "masks");
@@ -224,6 +275,7 @@ bool FeatureSet::has_stage(std::uint32_t stage) const {
     const bool glossy = has_lobe_class(LOBE_CLASS_GLOSSY);
     const bool diffuse = has_lobe_class(LOBE_CLASS_DIFFUSE);
     switch (stage) {
+        case STAGE_RECORD_LAYERS: return layers != 0;
         case STAGE_INTERSECT_SHADOW: return light_count > 0 && (glossy || diffuse);
         case STAGE_SHADE_ESCAPED: return has_environment();
         case STAGE_SHADE_EMITTED: return has_surface_lights();
@@ -249,6 +301,7 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
     out.define("LANES", lanes);
     out.define_unsigned("BLOCK_SLOTS", block_slots);
     write_macros(out, features);
+    write_layers(out, features);
     write_lobes(out, features);
     write_lights(out, features);
     for (const std::string& stage : features.stages()) out.include("stages/" + stage + ".h");

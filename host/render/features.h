@@ -24,9 +24,19 @@ enum LightIndex : std::uint32_t {
     LIGHT_KIND_COUNT
 };
 
+enum LayerIndex : std::uint32_t {
+#define LAYER(name, NAME, width) LAYER_##NAME,
+#include "layers/layers.def"
+#undef LAYER
+    LAYER_COUNT
+};
+
 struct FeatureSet {
     std::uint32_t lobes = 0;        // bit a lobe
     std::uint32_t light_kinds = 0;  // bit a kind of light
+    std::uint32_t layers = 0;       // bit a layer
+    bool layer_squares = false;     // the film holds the squares of layers, too
+    bool moments = false;           // ... of the samples' colours
     int light_count = 0;
     bool textures = false;           // materials
     bool textured_emitters = false;
@@ -52,6 +62,8 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool orthographic = false;
+    bool thin_lens = false;
     bool signed_filter = false;  // samples have weights, negative ones among them
     bool error_estimate = false; // the film is kept in two independent halves
     bool masks = false;            // rays pass some primitives, by their opacity
@@ -65,6 +77,11 @@ struct FeatureSet {
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;
     bool has_environment() const;
+
+    // Sums of a pixel in the buffer of layers, the number of its samples first; 0 without any.
+    std::size_t layer_channels() const;
+    // Where in them a layer's first channel is.
+    std::size_t layer_offset(std::uint32_t layer, bool squared) const;
 
     // Names of everything compiled in, for people and tests.
     std::vector<std::string> names() const;

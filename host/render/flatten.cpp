@@ -4,6 +4,7 @@
 #include <span>
 
 #include "render/flatten_instances.h"
+#include "render/flatten_layers.h"
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "render/presence.h"
@@ -59,6 +60,7 @@ public:
         lights_.finish();
         set_parameters();
         out_.filter_table = build_filter_table(scene_.film.filter);
+        flatten_layers(scene_, out_);
         finish_features();
         return std::move(out_);
     }
@@ -88,10 +90,12 @@ private:
     void finish_features() {
         FeatureSet& f = out_.features;
         f.textures = !out_.textures.empty();
+        f.orthographic = scene_.camera.projection == Camera::Projection::orthographic;
+        f.thin_lens = !f.orthographic && scene_.camera.aperture_radius > 0.0F;
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
-        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.vertex_opacity);
+        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.vertex_opacity || f.layers != 0);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
         out_.uvs = {};
@@ -181,12 +185,17 @@ private:
             else lights_.add_unsampled(*shape.emitter, out_.shapes.size());
             if (mesh.parallelogram) s.triangles_per_light = 2;
         }
-        out_.shapes.push_back(s);
+        push_shape(s, shape);
     }
 
     static void append(std::vector<float>& out, const glm::vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); }
 
     void add_analytic(const Shape& shape, const AnalyticShape& analytic);
+
+    void push_shape(const DeviceShape& s, const Shape& shape) {
+        out_.shapes.push_back(s);
+        out_.shape_sources.push_back(&shape);
+    }
 
     void set_parameters();
 
@@ -250,7 +259,7 @@ void Flattener::add_analytic(const Shape& shape, const AnalyticShape& analytic) 
     out_.analytic_bounds.push_back(analytic_bounds(analytic));
     if (emits(shape)) lights_.add_analytic(*shape.emitter, lights[kind], index, area, out_.analytic_bounds.back());
     out_.primitive_shapes.push_back(static_cast<std::uint32_t>(out_.shapes.size()));
-    out_.shapes.push_back(s);
+    push_shape(s, shape);
 }
 
 // Those with instances and something in them.
@@ -288,12 +297,13 @@ void Flattener::add_instances(const std::vector<std::size_t>& groups) {
 }
 
 void Flattener::set_parameters() {
-    const PerspectiveCamera& camera = scene_.camera;
+    const Camera& camera = scene_.camera;
     const Film& film = scene_.film;
     RenderParameters& p = out_.parameters;
     p.camera_to_world = affine(camera.to_world);
-    // The plane z = 1 of the camera, +x to the left and +y up, over the whole film.
-    const double half_width = std::tan(glm::radians(0.5 * static_cast<double>(camera.fov_x_degrees)));
+    // The plane z = 1 of the camera (z = 0 of an orthographic one), +x to the left and +y up, over the whole film.
+    const bool orthographic = camera.projection == Camera::Projection::orthographic;
+    const double half_width = orthographic ? 1.0 : std::tan(glm::radians(0.5 * static_cast<double>(camera.fov_x_degrees)));
     const double half_height = half_width * film.height / film.width;
     p.x_scale = static_cast<float>(-2.0 * half_width / film.width);
     p.x_offset = static_cast<float>(half_width * (1.0 - 2.0 * static_cast<double>(camera.principal_point_offset.x)));
@@ -301,6 +311,8 @@ void Flattener::set_parameters() {
     p.y_offset = static_cast<float>(half_height * (1.0 - 2.0 * static_cast<double>(camera.principal_point_offset.y)));
     p.near_clip = camera.near_clip;
     p.far_clip = camera.far_clip;
+    p.aperture_radius = camera.aperture_radius;
+    p.focus_distance = camera.focus_distance;
     p.window_x = static_cast<std::uint32_t>(film.crop_x);
     p.window_y = static_cast<std::uint32_t>(film.crop_y);
     p.window_width = static_cast<std::uint32_t>(film.crop_width);

@@ -61,6 +61,12 @@ struct DeviceScene {
     std::vector<float> environment_density;
 
     std::vector<float> filter_table;
+
+    // picture
+    std::vector<PictureChannel> channels;
+    bool radiance = true;
+    std::vector<const Shape*> shape_sources;   // of the scene, each device shape's
+    std::vector<std::uint32_t> layer_shapes;   // the number layers give each device shape
 };
 
 // Only what a surface or light uses gets into the arrays and the feature set.

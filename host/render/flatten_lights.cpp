@@ -24,6 +24,15 @@ Light light_of(LightIndex kind, const TexturedRgb& radiance) {
     return light;
 }
 
+// Unit vectors along which a picture varies, over half its size at distance one along the axis: rows of the inverse, which also tell
+// where a sheared transform puts a direction.
+void set_picture_ways(Light& light, const glm::mat4& to_world, double half_width, double half_height) {
+    const glm::dmat3 rows = glm::transpose(glm::inverse(glm::dmat3(to_world)));
+    const double along = glm::length(rows[2]);
+    light.edge2 = packed(glm::vec3(rows[0] / (along * half_width)));
+    light.normal = packed(glm::vec3(rows[1] / (along * half_height)));
+}
+
 LightBounds bounds_about(std::initializer_list<glm::vec3> points) {
     LightBounds b;
     b.lower = glm::dvec3(*points.begin());
@@ -120,7 +129,8 @@ void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, s
 }
 
 bool LightFlattener::has_place(const Emitter& emitter) {
-    return std::holds_alternative<PointEmitter>(emitter) || std::holds_alternative<SpotEmitter>(emitter);
+    return std::holds_alternative<PointEmitter>(emitter) || std::holds_alternative<SpotEmitter>(emitter) ||
+           std::holds_alternative<ProjectorEmitter>(emitter);
 }
 
 void LightFlattener::add_unsampled(const AreaEmitter& emitter, std::size_t shape) {
@@ -225,10 +235,34 @@ void LightFlattener::add(const SpotEmitter& e, double power) {
     light.smooth_cone = e.smooth ? 1 : 0;
     out_.features.smooth_cones = out_.features.smooth_cones || e.smooth;
     set_range(light, e.range);
+    if (e.texture != nullptr) {
+        light.radiance.texture = materials_.rgb(Parameter{e.intensity, e.texture}).texture;
+        out_.features.textured_emitters = true;
+        const double reach = std::tan(glm::radians(static_cast<double>(e.cutoff_degrees)));
+        set_picture_ways(light, e.to_world, reach, reach);
+    }
     LightBounds bounds = bounds_about({glm::vec3(e.to_world[3])});
     bounds.axis = glm::normalize(glm::dvec3(e.to_world[2]));
     bounds.emission = glm::radians(static_cast<double>(e.cutoff_degrees));
     bounds.intensity = luminance(e.intensity);
+    add_placed_light(light, power, bounds);
+}
+
+void LightFlattener::add(const ProjectorEmitter& e, double power) {
+    Light light = light_of(LIGHT_PROJECTOR, materials_.rgb(e.irradiance));
+    out_.features.textured_emitters = out_.features.textured_emitters || e.irradiance.texture != nullptr;
+    light.position = packed(glm::vec3(e.to_world[3]));
+    light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
+    const double half_width = std::tan(0.5 * glm::radians(static_cast<double>(e.fov_x_degrees)));
+    const double half_height = half_width / static_cast<double>(e.aspect);
+    set_picture_ways(light, e.to_world, half_width, half_height);
+    const double unit = glm::length(glm::dvec3(e.to_world[2]));
+    light.inverse_area = static_cast<float>(std::numbers::pi * static_cast<double>(e.scale) * unit);
+    LightBounds bounds = bounds_about({glm::vec3(e.to_world[3])});
+    bounds.axis = glm::normalize(glm::dvec3(e.to_world[2]));
+    bounds.emission = std::atan(std::hypot(half_width, half_height));
+    // Brightest towards the corners.
+    bounds.intensity = static_cast<double>(light.inverse_area) * mean_luminance(e.irradiance) / std::pow(std::cos(bounds.emission), 3.0);
     add_placed_light(light, power, bounds);
 }
 

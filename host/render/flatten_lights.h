@@ -56,6 +56,7 @@ private:
     void add(const ConstantEmitter& e, double power);
     void add(const PointEmitter& e, double power);
     void add(const SpotEmitter& e, double power);
+    void add(const ProjectorEmitter& e, double power);
     void add(const DirectionalEmitter& e, double power);
 
     MaterialFlattener& materials_;

@@ -63,11 +63,17 @@ struct RenderStats {
     }
 };
 
+struct ImageChannel {
+    std::string name;
+    std::vector<float> values;
+};
+
 // Linear RGB of the crop window, row by row from the top.
 struct Image {
     int width = 0;
     int height = 0;
     std::vector<float> rgb;
+    std::vector<ImageChannel> channels{};  // what the scene asks for beside them
 };
 
 struct Progress {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "cl/cache_lock.h"
@@ -8,6 +9,8 @@
 #include "cl/program.h"
 #include "render/driver.h"
 #include "render/flatten.h"
+#include "render/picture_channels.h"
+#include "scene/fault.h"
 
 namespace wavelobe {
 namespace {
@@ -32,6 +35,27 @@ SamplePlan sample_plan(const RenderSettings& settings) {
 int traversal_stack(int depth) {
     constexpr int step = 64;
     return (7 * depth + 2 + step - 1) / step * step;
+}
+
+// Before anything large is allocated.
+void refuse_large_film(const Device& device, const DeviceScene& scene) {
+    const RenderParameters& p = scene.parameters;
+    const std::uint64_t pixels = std::uint64_t{p.window_width} * p.window_height;
+    const std::uint64_t bytes = pixels * sizeof(FilmPixel) * (scene.features.error_estimate ? 2 : 1);
+    const std::uint64_t layers = pixels * scene.features.layer_channels() * sizeof(double);
+    const std::uint64_t moments = scene.features.moments ? pixels * MOMENT_CHANNELS * sizeof(double) : 0;
+    const std::uint64_t largest = std::max({bytes, layers, moments}), most = device.info().max_allocation_bytes;
+    if (largest <= most) return;
+    throw InputError(Fault{"", 0, 0, "film",
+                           std::to_string(p.window_width) + " x " + std::to_string(p.window_height) + " pixels take " +
+                               std::to_string(largest >> 20U) + " MiB at once; the device allows " + std::to_string(most >> 20U) + " MiB",
+                           "render a smaller picture, or a window of it with --crop"});
+}
+
+// As Mitsuba scales its ray differentials; where the number of samples is open, a whole pixel.
+float layer_film_step(const RenderSettings& settings) {
+    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
+    return open_end ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
 }
 
 int slots_of(const RenderSettings& settings) {
@@ -74,7 +98,9 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
           const auto start = Clock::now();
           DeviceScene data = flatten_scene(scene);
           data.parameters.seed = settings_in.seed;
+          data.parameters.layer_film_step = layer_film_step(settings_in);
           data.features.error_estimate = settings_in.target_error > 0.0;
+          refuse_large_film(device_in, data);
           stats.setup_parts["tables"] = seconds_since(start);
           return data;
       }()),
@@ -155,20 +181,19 @@ bool Renderer::render(const ProgressCallback& progress) { return state_->render(
 const RenderStats& Renderer::stats() const { return state_->stats; }
 
 Image Renderer::image() const {
-    const RenderParameters& p = state_->scene_data.parameters;
+    const DeviceScene& scene = state_->scene_data;
+    const RenderParameters& p = scene.parameters;
     Image image{static_cast<int>(p.window_width), static_cast<int>(p.window_height), {}};
-    image.rgb.reserve(std::size_t{3} * p.window_width * p.window_height);
-    const auto film = state_->buffers.view<FilmPixel>("film");
     const std::size_t pixels = std::size_t{p.window_width} * p.window_height;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        std::array<double, 3> sum{};
-        double samples = 0.0;
-        // One film, or the two halves of an error estimate.
-        for (std::size_t half = i; half < film.size(); half += pixels) {
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += film[half].sum[c];
-            samples += film[half].samples;
+    const std::vector<PixelSums> sums = pixel_sums(state_->buffers.view<FilmPixel>("film"), pixels);
+    image.rgb.reserve(3 * pixels);
+    for (const PixelSums& pixel : sums) {
+        for (const double channel : pixel.sum) {
+            image.rgb.push_back(scene.radiance && pixel.samples > 0.0 ? static_cast<float>(channel / pixel.samples) : 0.0F);
         }
-        for (const double channel : sum) image.rgb.push_back(samples > 0.0 ? static_cast<float>(channel / samples) : 0.0F);
+    }
+    for (const PictureChannel& channel : scene.channels) {
+        image.channels.push_back({channel.name, channel_values(scene, state_->buffers, channel, sums)});
     }
     return image;
 }

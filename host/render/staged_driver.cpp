@@ -84,6 +84,8 @@ private:
             generate = run(STAGE_GENERATE);
         }
         ClEvent intersect = run(STAGE_INTERSECT_CLOSEST);
+        std::optional<ClEvent> layers;
+        if (generate && context_.features.has_stage(STAGE_RECORD_LAYERS)) layers = run(STAGE_RECORD_LAYERS);
         ClEvent sort = run(STAGE_SORT_PATHS);
         context_.device.finish();
         std::uint64_t started = 0;
@@ -95,6 +97,7 @@ private:
         StageTimer& timer = context_.timer;
         if (generate) timer.add_launch(STAGE_GENERATE, started, std::move(*generate));
         timer.add_launch(STAGE_INTERSECT_CLOSEST, traced, std::move(intersect));
+        if (layers) timer.add_launch(STAGE_RECORD_LAYERS, started, std::move(*layers));
         timer.add_launch(STAGE_SORT_PATHS, traced, std::move(sort));
         timer.collect();
     }

@@ -281,6 +281,17 @@ struct SpotEmitter {
     float beam_width_degrees = 15.0F;
     float range = 0.0F;
     bool smooth = false;  // from beam to cutoff the square of a ramp over the cosine, otherwise a ramp over the angle
+    std::shared_ptr<const Texture> texture{};  // scales the intensity, over the square about the cone; null: none
+};
+
+// Throws a picture as a perspective camera sees it: along +z with +y up and +x to the left. pi * scale * irradiance is what a plane
+// at distance 1 receives that faces it.
+struct ProjectorEmitter {
+    glm::mat4 to_world{1.0F};  // may scale evenly
+    Parameter irradiance{Rgb{1.0F}, nullptr};
+    float scale = 1.0F;
+    float fov_x_degrees = 39.3077F;
+    float aspect = 1.0F;  // width over height
 };
 
 struct DirectionalEmitter {
@@ -289,7 +300,7 @@ struct DirectionalEmitter {
 };
 
 using Emitter =
-    std::variant<ConstantEmitter, EnvironmentMap, PointEmitter, SpotEmitter, DirectionalEmitter>;
+    std::variant<ConstantEmitter, EnvironmentMap, PointEmitter, SpotEmitter, DirectionalEmitter, ProjectorEmitter>;
 
 // ---- sensor, film, integrator -----------------------------------------------------------------------
 
@@ -314,19 +325,42 @@ struct Film {
     ReconstructionFilter filter;
 };
 
-// Looks along its own +z with +y up and +x to the left of the picture, as Mitsuba does.
-struct PerspectiveCamera {
+// Looks along its own +z with +y up and +x to the left of the picture, as Mitsuba does. Orthographic: the film spans [-1, 1] of
+// its x axis, and to_world may scale.
+struct Camera {
+    enum class Projection : std::uint8_t { perspective, orthographic } projection = Projection::perspective;
     glm::mat4 to_world{1.0F};
     float fov_x_degrees = 39.3077F;  // horizontal, over the whole film (readers resolve fov_axis)
     float near_clip = 0.01F;
     float far_clip = 10000.0F;
+    float aperture_radius = 0.0F;  // of a thin lens, perspective only; 0: a pinhole
+    float focus_distance = 1.0F;   // depth of the plane that is sharp
     glm::vec2 principal_point_offset{0.0F};
+};
+
+// What a picture holds beside its colours: the mean over each pixel's samples of one channel of a layer
+// (kernels/layers/layers.def), or of its square.
+enum class LayerKind : std::uint8_t {
+#define LAYER(name, NAME, width) name,
+#include "layers/layers.def"
+#undef LAYER
+    rgb,  // of the light itself
+    xyz,
+};
+
+struct PictureChannel {
+    std::string name;  // in the file, such as `normals.X`
+    LayerKind kind = LayerKind::depth;
+    int component = 0;
+    bool squared = false;
 };
 
 struct Integrator {
     int max_depth = -1;  // path edges seen from the camera; -1: unlimited, 1: emitters alone
     int rr_depth = 5;    // Russian roulette from this depth on
     bool hide_emitters = false;
+    bool radiance = true;  // false: the channels are all there is, the colours stay black
+    std::vector<PictureChannel> channels{};
 };
 
 struct Scene {
@@ -335,7 +369,7 @@ struct Scene {
     std::vector<ShapeGroup> groups;
     std::vector<Instance> instances;
     std::vector<Emitter> emitters;
-    PerspectiveCamera camera;
+    Camera camera;
     Film film;
     Integrator integrator;
     int sample_count = 4;

@@ -51,7 +51,14 @@ struct Power {
     double operator()(const SpotEmitter& e) const {
         const double beam = glm::radians(static_cast<double>(e.beam_width_degrees));
         const double cutoff = glm::radians(static_cast<double>(e.cutoff_degrees));
-        return luminance(e.intensity) * (e.smooth ? smooth_spot_solid_angle(beam, cutoff) : spot_solid_angle(beam, cutoff));
+        const double share = e.texture == nullptr ? 1.0 : mean_luminance(Parameter{Rgb{1.0F}, e.texture});
+        return share * luminance(e.intensity) * (e.smooth ? smooth_spot_solid_angle(beam, cutoff) : spot_solid_angle(beam, cutoff));
+    }
+    // As much as a plane at distance 1 receives.
+    double operator()(const ProjectorEmitter& e) const {
+        const double half_width = std::tan(0.5 * static_cast<double>(e.fov_x_degrees) * pi / 180.0);
+        const double area = 4.0 * half_width * half_width / static_cast<double>(e.aspect);
+        return pi * area * static_cast<double>(e.scale) * mean_luminance(e.irradiance);
     }
     double operator()(const DirectionalEmitter& e) const { return luminance(e.irradiance) * disk_area(scene_radius); }
 };

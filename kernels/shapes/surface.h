@@ -70,7 +70,6 @@ typedef struct {
 #define ANALYTIC_PARAMETER
 #define ANALYTIC_ARGUMENT
 #endif
-
 #if HAS_INSTANCES
 #define INSTANCES_PARAMETER , global const struct Instance *instances
 #define INSTANCES_ARGUMENT , instances
@@ -237,8 +236,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
         out->color = select3(colored, color, out->color);
     }
 #endif
-    out->u = wb;
-    out->v = wc;
+    out->u = wb, out->v = wc;
 #if HAS_UVS
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_uv);
     triangle_uvs(s.uvs, first_uv, triangle, wa, wb, wc, &out->u, &out->v);
@@ -335,7 +333,8 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     out->wi.z = SELECT(turned, -out->wi.z, out->wi.z);
 }
 
-INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
+// All but the side that is seen: no material, and the frame as the surface has it.
+INLINE Surface load_geometry(SurfaceView s, const TracedPath *p) {
     Surface out;
     out.primitive = primitive_of_hit(s, p->hit);
     out.shape = gather_uint(s.primitive_shapes, out.primitive);
@@ -355,6 +354,11 @@ INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
 #else
     out.frame = frame_of_normal(out.frame.n);
 #endif
+    return out;
+}
+
+INLINE Surface load_surface(SurfaceView s, const TracedPath *p) {
+    Surface out = load_geometry(s, p);
     choose_side(s, p, &out);
     return out;
 }

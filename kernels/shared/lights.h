@@ -17,7 +17,7 @@ struct Light {
     Uint32 kind;                  // LIGHT_x of lights/lights.def
     float selection_probability;  // of this light among all; not of those in a tree
     struct AliasEntry alias;      // row of this light in the selection table
-    struct TexturedRgb radiance;  // W / (m^2 sr); point and spot: intensity, W / sr; directional: irradiance, W / m^2
+    struct TexturedRgb radiance;  // W / (m^2 sr); point and spot: intensity, W / sr; directional: irradiance, W / m^2; projector: a picture
     struct Packed3 position;      // first vertex; point, spot: where it is
     struct Packed3 edge1;         // to the second vertex; spot, directional: direction the light travels, unit
     struct Packed3 edge2;         // to the third vertex

@@ -32,12 +32,13 @@ WAVELOBE_CHECK_SIZE(Shape, 40);
 #define SHAPE_SIDED_BY_WINDING 512u // sides of unlike materials are told by the geometric normal
 #define SHAPE_EMITS_COLORED 256u // scaled by the colours of its vertices
 
-// Perspective camera, film window, and the integrator's limits.
+// Camera, film window, and the integrator's limits.
 struct RenderParameters {
     struct Affine camera_to_world;
-    // Film coordinates in pixels (y down) to the plane z = 1 of the camera: x = x_scale * px + x_offset ...
+    // Film coordinates in pixels (y down) to the plane z = 1 of a perspective camera, the plane z = 0 of an orthographic one: x = x_scale * px + x_offset ...
     float x_scale, x_offset, y_scale, y_offset;
     float near_clip, far_clip;
+    float aperture_radius, focus_distance; // of a thin lens
     Uint32 window_x, window_y, window_width, window_height; // of the film that is rendered
     Uint32 seed;
     Uint32 max_depth; // vertices a path may have; at least 1
@@ -46,8 +47,13 @@ struct RenderParameters {
     Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
     struct FewSummary few; // of scenes without a hierarchy
+    Uint32 layer_first_instance; // number of the first instance among the shapes that layers name
+    float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 140);
+WAVELOBE_CHECK_SIZE(RenderParameters, 156);
+
+// Squares of red, green and blue, and of X, Y and Z, that a pixel holds where they are asked for.
+#define MOMENT_CHANNELS 6u
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

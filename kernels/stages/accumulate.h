@@ -5,9 +5,8 @@
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #include "stages/scene_view.h"
-#if HAS_SIGNED_FILTER
-#include "sampling/warps.h"
-#include "stages/dimensions.h"
+#if HAS_SIGNED_FILTER || HAS_MOMENTS
+#include "stages/camera.h"
 #endif
 #if HAS_ERROR_ESTIMATE
 #include "stages/tile_error.h"
@@ -15,13 +14,34 @@
 
 INLINE uint is_finite(float x) { return (as_uint(x) & 0x7f800000u) != 0x7f800000u; }
 
+#if HAS_MOMENTS
+// Adds the squares of each finite sample's RGB and XYZ to those of its pixel.
+INLINE void add_moments(Block block, const SceneView *scene) {
+    global const struct RenderParameters *p = scene->parameters;
+    for (uint id = 0u; id < block.header->path_count; id += LANES) {
+        FilmSample at = film_sample(block, scene, LANE_INDEX + (UInt)id);
+        for (uint lane = 0u; lane < LANES; lane++) {
+            uint x = block.header->tile_x + TILE_X(id + lane) - p->window_x;
+            uint y = block.header->tile_y + TILE_Y(id + lane) - p->window_y;
+            if (x >= p->window_width || y >= p->window_height) continue;
+            float r = radiance_channel(block, 0u)[id + lane], g = radiance_channel(block, 1u)[id + lane];
+            float b = radiance_channel(block, 2u)[id + lane];
+            if (!(is_finite(r) & is_finite(g) & is_finite(b))) continue;
+            double values[MOMENT_CHANNELS] = {r, g, b, 0.412453 * r + 0.357580 * g + 0.180423 * b,
+                                              0.212671 * r + 0.715160 * g + 0.072169 * b,
+                                              0.019334 * r + 0.119193 * g + 0.950227 * b};
+            global double *sums = scene->moment_film + ((size_t)y * p->window_width + x) * MOMENT_CHANNELS;
+            for (uint c = 0u; c < MOMENT_CHANNELS; c++) sums[c] += ((const float *)&at.weight)[lane] * values[c] * values[c];
+        }
+    }
+}
+#endif
+
 #if HAS_SIGNED_FILTER
 // Each sample by what its place under the filter counts.
 INLINE void weigh_samples(Block block, const SceneView *scene) {
     for (uint first = 0u; first < block.header->path_count; first += LANES) {
-        Float u1, u2;
-        sample_2d(path_sample_id(block, LANE_INDEX + (UInt)first, scene->parameters->seed), (UInt)PAIR_FILM, &u1, &u2);
-        Float weight = filter_weight(scene->filter_table, u1) * filter_weight(scene->filter_table, u2);
+        Float weight = film_sample(block, scene, LANE_INDEX + (UInt)first).weight;
         for (uint c = 0u; c < 3u; c++) {
             global float *channel = radiance_channel(block, c) + first;
             store(channel, load(channel) * weight);
@@ -35,6 +55,9 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
     global struct BlockHeader *h = block.header;
     uint pending = h->count[QUEUE_RAYS] + h->count[QUEUE_SHADOW];
     if (h->path_count == 0u || h->next_path < h->path_count || pending != 0u) return 0u;
+#if HAS_MOMENTS
+    add_moments(block, scene);
+#endif
 #if HAS_SIGNED_FILTER
     weigh_samples(block, scene);
 #endif

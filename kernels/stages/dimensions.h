@@ -7,7 +7,12 @@
 #include "shared/scene.h"
 
 #define PAIR_FILM 0u
+#if HAS_THIN_LENS
+#define PAIR_LENS 1u // point on the lens
+#define PAIRS_BEFORE_PATH 2u
+#else
 #define PAIRS_BEFORE_PATH 1u
+#endif
 #define PAIRS_PER_VERTEX (4u + HAS_BLENDS)
 #define PAIR_LIGHT 0u     // point on the light
 #define PAIR_DIRECTION 1u // direction of the lobe

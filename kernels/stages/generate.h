@@ -2,17 +2,8 @@
 #ifndef WAVELOBE_STAGES_GENERATE_H
 #define WAVELOBE_STAGES_GENERATE_H
 
-#include "core/math.h"
-#include "sampling/warps.h"
 #include "shared/bvh.h"
-#include "stages/dimensions.h"
-#include "stages/scene_view.h"
-
-INLINE Vec3 transform_vector(global const struct Affine *a, Vec3 v) {
-    return vec3(madd(v.x, (Float)a->m[0], madd(v.y, (Float)a->m[1], v.z * a->m[2])),
-                madd(v.x, (Float)a->m[4], madd(v.y, (Float)a->m[5], v.z * a->m[6])),
-                madd(v.x, (Float)a->m[8], madd(v.y, (Float)a->m[9], v.z * a->m[10])));
-}
+#include "stages/camera.h"
 
 INLINE uint run_generate(Block block, const SceneView *scene) {
     Queue rays = QUEUE(block, RAYS);
@@ -26,19 +17,11 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
         uint bits = lane_bits(inside);
         next += LANES;
         if (bits == 0u) continue;
-        Float u1, u2;
-        sample_2d(path_sample_id(block, id, p->seed), (UInt)PAIR_FILM, &u1, &u2);
-        Float film_x = convert_Float(as_Int(px)) + 0.5f + sample_filter(scene->filter_table, u1);
-        Float film_y = convert_Float(as_Int(py)) + 0.5f + sample_filter(scene->filter_table, u2);
-        Vec3 on_plane = vec3(madd(film_x, (Float)p->x_scale, (Float)p->x_offset),
-                          madd(film_y, (Float)p->y_scale, (Float)p->y_offset), ONE);
-        Float stretch = sqrt(length_squared(on_plane)); // distance along the ray a unit of depth
-        Vec3 direction = normalize3(transform_vector(&p->camera_to_world, on_plane));
-        global const float *m = p->camera_to_world.m;
-        Vec3 eye = vec3((Float)m[3], (Float)m[7], (Float)m[11]);
-        append_vec3(rays, PATH_ORIGIN, count, scale_add(direction, stretch * p->near_clip, eye), bits);
-        append_vec3(rays, PATH_DIRECTION, count, direction, bits);
-        append_field(rays, PATH_T, count, stretch * (p->far_clip - p->near_clip), bits);
+        FilmSample at = film_sample(block, scene, id);
+        CameraRay r = camera_ray(p, at.id, at.x, at.y);
+        append_vec3(rays, PATH_ORIGIN, count, r.origin, bits);
+        append_vec3(rays, PATH_DIRECTION, count, r.direction, bits);
+        append_field(rays, PATH_T, count, r.length, bits);
         append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
         append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
         append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);

@@ -3,6 +3,9 @@
 #ifndef WAVELOBE_STAGES_SCENE_VIEW_H
 #define WAVELOBE_STAGES_SCENE_VIEW_H
 
+#if HAS_LAYERS || HAS_MOMENTS
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
 #include "bsdf/material.h"
 #include "shapes/geometry_parameters.h"
 #if HAS_LIGHTS
@@ -20,7 +23,29 @@ typedef struct {
 #endif
     global const float *filter_table;
     global struct FilmPixel *film;
+#if HAS_LAYERS
+    global double *layer_film;
+    global const uint *layer_shapes; // number of each shape, with LAYER_ONE_PRIMITIVE
+#endif
+#if HAS_MOMENTS
+    global double *moment_film;
+#endif
 } SceneView;
+
+#if HAS_LAYERS
+#define LAYER_PARAMETERS , global double *layer_film, global const uint *layer_shapes
+#define LAYER_ARGUMENTS , layer_film, layer_shapes
+#else
+#define LAYER_PARAMETERS
+#define LAYER_ARGUMENTS
+#endif
+#if HAS_MOMENTS
+#define MOMENT_PARAMETER , global double *moment_film
+#define MOMENT_ARGUMENT , moment_film
+#else
+#define MOMENT_PARAMETER
+#define MOMENT_ARGUMENT
+#endif
 
 #if HAS_LIGHTS
 #define SCENE_LIGHT_PARAMETERS LIGHT_PARAMETERS
@@ -32,8 +57,8 @@ typedef struct {
 
 #define SCENE_PARAMETERS                                                                          \
     SURFACE_PARAMETERS TEXTURE_PARAMETERS SCENE_LIGHT_PARAMETERS, GEOMETRY_PARAMETERS,            \
-        global const float *filter_table, global struct FilmPixel *film
+        global const float *filter_table, global struct FilmPixel *film LAYER_PARAMETERS MOMENT_PARAMETER
 #define SCENE_VIEW \
-    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW filter_table, film}
+    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW filter_table, film LAYER_ARGUMENTS MOMENT_ARGUMENT}
 
 #endif

@@ -93,7 +93,7 @@ TEST_F(Exr, KeepsEveryBitAndPlacesTheCropWindowInTheFilm) {
 }
 
 TEST_F(Exr, StatesHowThePictureWasMade) {
-    PerspectiveCamera camera;
+    Camera camera;
     camera.to_world = glm::translate(glm::mat4(1.0F), {1.0F, 2.0F, 3.0F});
     const Film film{.width = 4, .height = 2, .crop_width = 4, .crop_height = 2, .filter = {}};
     replace_file(path("a.exr"), encode_exr(noise(4, 2), film, camera, {"hall", 64, 500, 4000000000U, 1.25}));
@@ -118,7 +118,7 @@ TEST_F(Exr, StatesHowThePictureWasMade) {
 }
 
 TEST_F(Exr, WorldToNdcPutsTheCornersOfTheViewAtTheCornersOfTheFilm) {
-    PerspectiveCamera camera;
+    Camera camera;
     camera.fov_x_degrees = 60.0F;
     camera.principal_point_offset = {0.1F, -0.05F};
     camera.to_world = glm::rotate(glm::translate(glm::mat4(1.0F), {3.0F, -2.0F, 5.0F}), 0.7F,

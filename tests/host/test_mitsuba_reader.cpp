@@ -111,7 +111,7 @@ TEST(MitsubaReader, AppliesTransformsInOrder) {
                                    glm::vec4(1, 2, 3, 1)));
     EXPECT_EQ(matrix(1), glm::mat4(glm::vec4(2, 0, 0, 0), glm::vec4(0, 3, 0, 0), glm::vec4(0, 0, 1, 0),
                                    glm::vec4(2, 0, 0, 1)));
-    EXPECT_NEAR(glm::distance(matrix(2) * glm::vec4(1, 0, 0, 1), glm::vec4(0, 1, 0, 1)), 0.0F, 1e-6F);
+    EXPECT_NEAR(glm::distance(matrix(2) * glm::vec4(1, 0, 0, 1), glm::vec4(0, 2, 0, 1)), 0.0F, 1e-6F);
     EXPECT_EQ(matrix(3) * glm::vec4(0, 1, 0, 1), glm::vec4(6, 6, 6, 1));
     EXPECT_EQ(matrix(4) * glm::vec4(0, 0, 1, 1), glm::vec4(3, 0, -0.45F, 1));
     EXPECT_EQ(matrix(5) * glm::vec4(1, 0, 1, 1), glm::vec4(2, 2, 4, 1));

@@ -142,6 +142,65 @@ TEST_P(Generate, CropWindowKeepsFilmCoordinates) {
     }
 }
 
+// All rays are parallel, from a plane that the film spans: [-1, 1] of the transform's x axis.
+TEST_P(Generate, OrthographicRaysAreParallel) {
+    Scene scene = film_scene();
+    scene.camera.projection = Camera::Projection::orthographic;
+    scene.camera.to_world = scene.camera.to_world * glm::scale(glm::mat4(1.0F), {3, 3, 1});
+    StageBench bench(scene, GetParam(), 1024);
+    bench.header().tile_x = 16;
+    bench.header().path_count = TILE_PIXELS;
+    bench.header().next_path = 0;
+    bench.run("generate");
+    ASSERT_EQ(bench.header().count[QUEUE_RAYS], TILE_PIXELS);
+    for (std::uint32_t i = 0; i < TILE_PIXELS; ++i) {
+        const TestPath p = bench.path(QUEUE_RAYS, i);
+        expect_close(p.direction, glm::dvec3(scene.camera.to_world[2]));
+        ASSERT_NEAR(p.t, 99.75, 99.75 * stage_rounding);
+        const glm::dvec3 local = glm::inverse(glm::dmat4(scene.camera.to_world)) * glm::dvec4(p.origin, 1);
+        ASSERT_NEAR(local.z, 0.25, 1e-5);
+        ASSERT_NEAR((1 - local.x) * 20, 16.5 + TILE_X(p.id), 0.5 + 1e-4);
+        ASSERT_NEAR((24.0 / 40 - local.y) * 20, 0.5 + TILE_Y(p.id), 0.5 + 1e-4);
+    }
+}
+
+// Rays of one place of the film start all over the lens and meet in the plane that is sharp.
+TEST_P(Generate, RaysThroughALensMeetWhereItIsFocused) {
+    Scene scene = film_scene();
+    StageBench pinhole(scene, GetParam(), 1024);
+    scene.camera.aperture_radius = 0.4F;
+    scene.camera.focus_distance = 7.0F;
+    StageBench lens(scene, GetParam(), 1024);
+    for (StageBench* bench : {&pinhole, &lens}) {
+        bench->header().tile_x = 16;
+        bench->header().path_count = 4 * TILE_PIXELS;
+        bench->header().next_path = 0;
+        bench->run("generate");
+    }
+    const glm::dmat4 to_camera = glm::inverse(glm::dmat4(scene.camera.to_world));
+    glm::dvec2 mean(0.0);
+    double mean_square = 0.0;
+    const std::uint32_t n = lens.header().count[QUEUE_RAYS];
+    ASSERT_EQ(n, 4 * TILE_PIXELS);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const TestPath p = lens.path(QUEUE_RAYS, i), q = pinhole.path(QUEUE_RAYS, i);
+        const auto at_depth = [&](const TestPath& path, double depth) {
+            const glm::dvec3 origin = to_camera * glm::dvec4(path.origin, 1), d = glm::dmat3(to_camera) * glm::dvec3(path.direction);
+            return origin + d * ((depth - origin.z) / d.z);
+        };
+        ASSERT_LT(glm::distance(at_depth(p, 7.0), at_depth(q, 7.0)), 2e-5) << "the same sharp point";
+        const glm::dvec2 on_lens = at_depth(p, 0.0);
+        ASSERT_LE(glm::length(on_lens), 0.4 + 1e-5);
+        mean += on_lens / static_cast<double>(n);
+        mean_square += glm::dot(on_lens, on_lens) / n;
+        ASSERT_NEAR((to_camera * glm::dvec4(p.origin, 1)).z, 0.25, 1e-5);
+        const double cosine = (glm::dmat3(to_camera) * glm::dvec3(p.direction)).z;
+        ASSERT_NEAR(p.t * cosine, 99.75, 1e-3);
+    }
+    EXPECT_LT(glm::length(mean), 0.01);
+    EXPECT_NEAR(mean_square, 0.5 * 0.16, 0.003) << "even over the disk";
+}
+
 WAVELOBE_AT_EACH_WIDTH(Generate);
 
 }  // namespace

@@ -88,7 +88,7 @@ void frame_box(const Box& found, Scene& scene) {
     }
     if (distance <= 0.0) distance = 1.0;
     const double radius = 0.5 * glm::length(box.high - box.low);
-    PerspectiveCamera& camera = scene.camera;
+    Camera& camera = scene.camera;
     camera.to_world = glm::mat4(glm::vec4(-right, 0), glm::vec4(up, 0), glm::vec4(-backward, 0), glm::vec4(center + distance * backward, 1));
     camera.fov_x_degrees = horizontal_degrees(vertical, scene.film);
     camera.near_clip = static_cast<float>(1e-3 * distance);

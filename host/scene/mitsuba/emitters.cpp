@@ -2,7 +2,10 @@
 #include <array>
 
 #include "scene/image.h"
+#include "scene/mitsuba/field_of_view.h"
 #include "scene/mitsuba/query.h"
+#include "scene/mitsuba/transforms.h"
+#include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
 
@@ -64,11 +67,31 @@ std::optional<Emitter> read_spot(Query& query) {
     spot.cutoff_degrees = static_cast<float>(cutoff);
     spot.beam_width_degrees = static_cast<float>(beam);
     if (query.has("texture")) {
-        query.fault_at("texture", "spot lights with a projection texture are not supported", "remove the texture");
-        query.accept({"texture"});
-        query.children("texture");
+        spot.texture = query.parameter("texture", 1.0, ColourUse::unbounded).texture;
+        if (spot.texture == nullptr && !query.has_unresolved_children())
+            query.fault_at("texture", "`texture` does not vary over the cone", "nest a <texture>, or scale `intensity`");
     }
     return spot;
+}
+
+// Width over height of what is projected; only pictures have a shape of their own.
+double aspect_of(const Parameter& irradiance) {
+    const auto* bitmap = irradiance.texture == nullptr ? nullptr : std::get_if<Bitmap>(&irradiance.texture->source);
+    return bitmap == nullptr ? 1.0 : static_cast<double>(bitmap->width) / bitmap->height;
+}
+
+std::optional<Emitter> read_projector(Query& query) {
+    ProjectorEmitter projector;
+    const glm::dmat4 to_world = query.transform("to_world");
+    if (!is_similarity(to_world))
+        query.fault_at("to_world", "a projector cannot be scaled unevenly or sheared", "use the same scale for all axes");
+    projector.to_world = glm::mat4(to_world);
+    projector.irradiance = query.parameter("irradiance", 1.0, ColourUse::emission);
+    projector.scale = static_cast<float>(query.real("scale", 1.0, not_negative));
+    const double aspect = aspect_of(projector.irradiance);
+    projector.aspect = static_cast<float>(aspect);
+    projector.fov_x_degrees = horizontal_degrees(query, aspect);
+    return projector;
 }
 
 std::optional<Emitter> read_directional(Query& query) {
@@ -85,19 +108,40 @@ struct Plugin {
     const char* name;
     std::optional<Emitter> (*read)(Query&);  // null: nested in a shape
 };
-constexpr std::array<Plugin, 6> plugins{{
+constexpr std::array<Plugin, 7> plugins{{
     {"area", nullptr},
     {"constant", read_constant},
     {"directional", read_directional},
     {"envmap", read_envmap},
     {"point", read_point},
+    {"projector", read_projector},
     {"spot", read_spot},
 }};
+
+// What Mitsuba has beside these, and what to do without it.
+constexpr std::array<std::array<const char*, 2>, 6> known_elsewhere{{
+    {"directionalarea", "give a small `spot`, or an `area` light"},
+    {"sky", "render it to a picture for `envmap`, or use `constant`"},
+    {"sun", "use `directional`"},
+    {"sunsky", "render it to a picture for `envmap`, or use `constant` with `directional`"},
+    {"timed_sunsky", "render it to a picture for `envmap`, or use `constant` with `directional`"},
+    {"volumelight", "use an `area` light"},
+}};
+
+const Plugin* find_emitter(Context& context, const Object& object) {
+    for (const auto& [type, instead] : known_elsewhere) {
+        if (object.broken || object.type != type) continue;
+        context.faults.add(object.place, object.label(),
+                           "emitters of this type are not supported; expected one of " + quoted_list(names_of(plugins)), instead);
+        return nullptr;
+    }
+    return find_plugin(context, object, plugins);
+}
 
 }  // namespace
 
 void read_emitter(Context& context, const Object& object) {
-    const auto* plugin = find_plugin(context, object, plugins);
+    const auto* plugin = find_emitter(context, object);
     if (plugin == nullptr) return;
     Query query(context, object);
     if (plugin->read == nullptr)
@@ -109,7 +153,7 @@ void read_emitter(Context& context, const Object& object) {
 }
 
 std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& object) {
-    const auto* plugin = find_plugin(context, object, plugins);
+    const auto* plugin = find_emitter(context, object);
     if (plugin == nullptr) return std::nullopt;
     Query query(context, object);
     if (plugin->read != nullptr) {

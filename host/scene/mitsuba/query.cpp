@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "scene/dielectrics.h"
+#include "scene/mitsuba/transforms.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -125,8 +126,7 @@ glm::dmat4 Query::transform(const std::string& name) {
         wrong_type(*property, "<transform>");
         return glm::dmat4(1.0);
     }
-    const glm::dvec4 last_row((*matrix)[0].w, (*matrix)[1].w, (*matrix)[2].w, (*matrix)[3].w);
-    if (last_row == glm::dvec4(0.0, 0.0, 0.0, 1.0) && glm::determinant(*matrix) != 0.0) return *matrix;
+    if (is_invertible_affine(*matrix)) return *matrix;
     context_.faults.add(property->place, object_.label(), "`" + name + "` is not an invertible affine transform",
                         "expected a last row of 0 0 0 1 and no scale of zero");
     return glm::dmat4(1.0);

@@ -1,11 +1,9 @@
 // The sensor plugins, and the samplers nested in them.
 #include <array>
-#include <cmath>
 #include <limits>
 
-#include "scene/mitsuba/query.h"
+#include "scene/mitsuba/field_of_view.h"
 #include "scene/mitsuba/transforms.h"
-#include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
 
@@ -40,7 +38,7 @@ Sampling read_sampler(Context& context, const Object& object) {
     if (plugin == nullptr) return {};
     Query query(context, object);
     Sampling sampling;
-    sampling.sample_count = static_cast<int>(query.integer("sample_count", 4, 1, std::numeric_limits<int>::max()));
+    sampling.sample_count = static_cast<int>(query.integer("sample_count", 4, 1, 1 << 24));
     sampling.seed =
         static_cast<std::uint32_t>(query.integer("seed", 0, 0, std::numeric_limits<std::uint32_t>::max()));
     query.accept(plugin->accepted());
@@ -48,71 +46,61 @@ Sampling read_sampler(Context& context, const Object& object) {
     return sampling;
 }
 
-double degrees_of_tangent(double half_tangent) { return glm::degrees(2.0 * std::atan(half_tangent)); }
-
-// The tangent of half the field of view that `fov` or `focal_length` states, and the axis it holds for.
-struct FieldOfView {
-    double half_tangent = 0.0;
-    enum class Axis { x, y, diagonal, smaller, larger } axis = Axis::x;
-};
-
-FieldOfView read_field_of_view(Query& query) {
-    if (query.has("fov") && query.has("focal_length"))
-        query.fault("both `fov` and `focal_length` are given", "keep one of the two");
-    using Axis = FieldOfView::Axis;
-    const double fov = query.real("fov", 45.0, Range{0.0, 179.999, true});
-    const auto axis = static_cast<Axis>(query.choice("fov_axis", {"x", "y", "diagonal", "smaller", "larger"}, 0));
-    std::string focal_length = query.text("focal_length", "50mm");
-    if (query.has("fov")) return {std::tan(glm::radians(fov) / 2.0), axis};
-
-    // The diagonal of a 35 mm film frame, 36 x 24 mm.
-    if (focal_length.ends_with("mm")) focal_length.resize(focal_length.size() - 2);
-    const auto millimetres = parse_real(focal_length);
-    if (!millimetres || *millimetres <= 0.0) {
-        query.fault_at("focal_length", "cannot read the focal length; expected a positive number such as 50mm", "");
-        return {std::tan(glm::radians(20.0)), Axis::x};
-    }
-    return {std::hypot(36.0, 24.0) / (2.0 * *millimetres), Axis::diagonal};
-}
-
-float horizontal_degrees(Query& query, const Film& film) {
-    using Axis = FieldOfView::Axis;
-    const double aspect = static_cast<double>(film.width) / film.height;
-    FieldOfView view = read_field_of_view(query);
-    if (view.axis == Axis::smaller) view.axis = aspect > 1.0 ? Axis::y : Axis::x;
-    if (view.axis == Axis::larger) view.axis = aspect > 1.0 ? Axis::x : Axis::y;
-    if (view.axis == Axis::y) view.half_tangent *= aspect;
-    if (view.axis == Axis::diagonal) view.half_tangent /= std::sqrt(1.0 + 1.0 / (aspect * aspect));
-    return static_cast<float>(degrees_of_tangent(view.half_tangent));
-}
-
-PerspectiveCamera read_perspective(Query& query, const Film& film) {
-    PerspectiveCamera camera;
-    const glm::dmat4 to_world = query.transform("to_world");
-    if (has_scale(to_world))
-        query.fault_at("to_world", "the transform of a camera cannot scale", "remove the scale factors");
-    camera.to_world = glm::mat4(to_world);
-    camera.fov_x_degrees = horizontal_degrees(query, film);
+// What all of them have: the transform, planes of depth, and times of a shutter that nothing here moves under.
+Camera read_projective(Query& query) {
+    Camera camera;
+    camera.to_world = glm::mat4(query.transform("to_world"));
     const double near_clip = query.real("near_clip", 0.01, positive);
     const double far_clip = query.real("far_clip", 10000.0, positive);
     if (near_clip >= far_clip) query.fault("`near_clip` is not below `far_clip`", "");
     camera.near_clip = static_cast<float>(near_clip);
     camera.far_clip = static_cast<float>(far_clip);
-    camera.principal_point_offset = glm::vec2(
-        glm::dvec2(query.real("principal_point_offset_x", 0.0), query.real("principal_point_offset_y", 0.0)));
-    query.real("focus_distance", far_clip);
+    camera.focus_distance = static_cast<float>(query.real("focus_distance", far_clip, positive));
     const double open = query.real("shutter_open", 0.0);
     if (query.real("shutter_close", 0.0) < open && query.has("shutter_close"))
         query.fault("`shutter_close` is before `shutter_open`", "");
     return camera;
 }
 
+void refuse_scale(Query& query, const Camera& camera) {
+    if (has_scale(glm::dmat4(camera.to_world)))
+        query.fault_at("to_world", "the transform of a camera cannot scale", "remove the scale factors");
+}
+
+Camera read_perspective(Query& query, const Film& film) {
+    Camera camera = read_projective(query);
+    refuse_scale(query, camera);
+    camera.fov_x_degrees = horizontal_degrees(query, static_cast<double>(film.width) / film.height);
+    camera.principal_point_offset = glm::vec2(
+        glm::dvec2(query.real("principal_point_offset_x", 0.0), query.real("principal_point_offset_y", 0.0)));
+    return camera;
+}
+
+Camera read_thin_lens(Query& query, const Film& film) {
+    Camera camera = read_projective(query);
+    refuse_scale(query, camera);
+    camera.fov_x_degrees = horizontal_degrees(query, static_cast<double>(film.width) / film.height);
+    if (!query.has("aperture_radius"))
+        query.fault("the property `aperture_radius` is missing", "give the radius of the lens in scene units");
+    camera.aperture_radius = static_cast<float>(query.real("aperture_radius", 1.0, not_negative));
+    return camera;
+}
+
+// The film spans [-1, 1] of the transform's x axis.
+Camera read_orthographic(Query& query, const Film&) {
+    Camera camera = read_projective(query);
+    camera.projection = Camera::Projection::orthographic;
+    return camera;
+}
+
 struct Plugin {
     const char* name;
-    PerspectiveCamera (*read)(Query&, const Film&);
+    Camera (*read)(Query&, const Film&);
 };
-constexpr std::array<Plugin, 1> plugins{{
+constexpr std::array<Plugin, 3> plugins{{
+    {"orthographic", read_orthographic},
     {"perspective", read_perspective},
+    {"thinlens", read_thin_lens},
 }};
 
 const Object* only_child(Query& query, const std::string& tag) {
@@ -131,7 +119,7 @@ void read_sensor(Context& context, const Object& object) {
     const Object* sampler_object = only_child(query, "sampler");
     const Film film = film_object != nullptr ? read_film(context, *film_object) : Film{};
     const Sampling sampling = sampler_object != nullptr ? read_sampler(context, *sampler_object) : Sampling{};
-    const PerspectiveCamera camera = plugin->read(query, film);
+    const Camera camera = plugin->read(query, film);
     query.finish();
     if (++context.sensors > 1) return query.warn("ignored: the first sensor of the scene is the one that is used");
     context.scene.camera = camera;

@@ -22,7 +22,10 @@ glm::dmat4 translation(const glm::dvec3& offset) { return glm::translate(glm::dm
 glm::dmat4 scaling(const glm::dvec3& factors) { return glm::scale(glm::dmat4(1.0), factors); }
 
 glm::dmat4 rotation(const glm::dvec3& axis, double degrees) {
-    return glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis);
+    const double angle = glm::radians(degrees), c = std::cos(angle), s = std::sin(angle);
+    // Rodrigues' formula: c I + s [axis] + (1 - c) axis axis^T.
+    const glm::dmat3 across(0.0, axis.z, -axis.y, -axis.z, 0.0, axis.x, axis.y, -axis.x, 0.0);
+    return glm::dmat4(glm::dmat3(c) + s * across + (1.0 - c) * glm::outerProduct(axis, axis));
 }
 
 std::optional<glm::dmat4> look_at(const glm::dvec3& origin, const glm::dvec3& target, glm::dvec3 up) {
@@ -40,6 +43,18 @@ Tangents coordinate_system(const glm::dvec3& n) {
     const double a = -1.0 / (sign + n.z);
     const double b = n.x * n.y * a;
     return {{1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+bool is_invertible_affine(const glm::dmat4& matrix) {
+    const glm::dvec4 last_row(matrix[0].w, matrix[1].w, matrix[2].w, matrix[3].w);
+    const glm::dmat4 inverse = glm::inverse(matrix);
+    for (int column = 0; column < 4; ++column) {
+        for (int row = 0; row < 4; ++row) {
+            const double most = std::max(std::abs(matrix[column][row]), std::abs(inverse[column][row]));
+            if (!(most <= 1e30)) return false;  // NaN, too
+        }
+    }
+    return last_row == glm::dvec4(0.0, 0.0, 0.0, 1.0) && glm::determinant(matrix) != 0.0;
 }
 
 bool is_similarity(const glm::dmat4& matrix) {

@@ -9,7 +9,7 @@ namespace wavelobe::mitsuba {
 
 glm::dmat4 translation(const glm::dvec3& offset);
 glm::dmat4 scaling(const glm::dvec3& factors);
-// About an axis of any non-zero length, right-handed.
+// About a unit axis, right-handed. Mitsuba 3 takes any axis as it is, so that other lengths scale and shear, and so does this.
 glm::dmat4 rotation(const glm::dvec3& axis, double degrees);
 // +z towards the target, +y near `up` (zero: any), +x to the left. Nothing when the directions do not span space.
 std::optional<glm::dmat4> look_at(const glm::dvec3& origin, const glm::dvec3& target, glm::dvec3 up);
@@ -20,6 +20,8 @@ struct Tangents {
 };
 Tangents coordinate_system(const glm::dvec3& n);
 
+// The last row is 0 0 0 1, and both the matrix and its inverse can be held in single precision.
+bool is_invertible_affine(const glm::dmat4& matrix);
 // The linear part is a rotation or reflection times one factor.
 bool is_similarity(const glm::dmat4& matrix);
 // The linear part is not orthonormal.

@@ -120,6 +120,19 @@ void upgrade_type(Object& object, std::vector<Fault>& warnings) {
     }
 }
 
+// Mitsuba 0.x normalized the axis.
+void upgrade_rotation(Element& element) {
+    glm::dvec3 axis(0.0);
+    const std::array<const char*, 3> names{"x", "y", "z"};
+    for (int i = 0; i < 3; ++i) axis[i] = parse_real(element.text(names[static_cast<std::size_t>(i)])).value_or(0.0);
+    const double length = glm::length(axis);
+    if (!(length > 0.0)) return;
+    for (auto& [key, value] : element.attributes) {
+        const auto number = parse_real(value);
+        if (number && (key == "x" || key == "y" || key == "z")) value = fmt::format("{}", *number / length);
+    }
+}
+
 }  // namespace
 
 std::string snake_case(const std::string& name) {
@@ -143,6 +156,7 @@ void upgrade_element(Element& element) {
         if (key == "name" && !parameter) value = snake_case(value);
     std::erase_if(element.attributes, [](const auto& attribute) { return attribute.first == "intent"; });
 
+    if (element.tag == "rotate") upgrade_rotation(element);
     if (element.tag == "srgb") {
         // Encoded values become linear ones.
         element.tag = "rgb";

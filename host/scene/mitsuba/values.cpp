@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace wavelobe::mitsuba {
@@ -79,7 +80,7 @@ std::vector<std::string> split(std::string_view text) {
 
 std::optional<double> parse_real(std::string_view text) {
     const auto number = parse_whole<double>(text);
-    return number && std::isfinite(*number) ? number : std::nullopt;
+    return number && std::abs(*number) <= static_cast<double>(std::numeric_limits<float>::max()) ? number : std::nullopt;
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view text) { return parse_whole<std::int64_t>(text); }

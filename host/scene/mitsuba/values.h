@@ -14,7 +14,7 @@ namespace wavelobe::mitsuba {
 // Tokens between spaces and commas.
 std::vector<std::string> split(std::string_view text);
 
-// Nothing for text that is not one finite number.
+// Nothing for text that is not one finite number, within the range of single precision.
 std::optional<double> parse_real(std::string_view text);
 std::optional<std::int64_t> parse_integer(std::string_view text);
 std::optional<bool> parse_boolean(std::string_view text);
