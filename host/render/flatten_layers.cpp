@@ -23,9 +23,7 @@ void flatten_layers(const Scene& scene, DeviceScene& out) {
     out.parameters.layer_first_instance = static_cast<std::uint32_t>(numbers.size()) + 1;
     for (const Shape* shape : out.shape_sources) {
         const auto number = numbers.find(shape);
-        const auto* mesh = std::get_if<TriangleMesh>(&shape->geometry);
-        const bool one = mesh != nullptr && mesh->parallelogram;
-        out.layer_shapes.push_back((number == numbers.end() ? 0 : number->second) | (one ? LAYER_ONE_PRIMITIVE : 0));
+        out.layer_shapes.push_back(number == numbers.end() ? 0 : number->second);
     }
 }
 

@@ -67,16 +67,13 @@ INLINE void uv_step(LayerInput in, Float dx, Float dy, Float *out) {
 INLINE void layer_duv_dx(LayerInput in, Float *out) { uv_step(in, ONE, ZERO, out); }
 INLINE void layer_duv_dy(LayerInput in, Float *out) { uv_step(in, ZERO, ONE, out); }
 
-// A parallelogram of two triangles is one primitive.
 INLINE void layer_prim_index(LayerInput in, Float *out) {
     UInt first = GATHER_UINT_FIELD(in.scene->surfaces.shapes, Shape, in.surface->shape, first_primitive);
-    UInt word = gather_uint(in.scene->layer_shapes, in.surface->shape);
-    Int one = (word & (UInt)LAYER_ONE_PRIMITIVE) != (UInt)0u;
-    out[0] = SELECT(one, ZERO, convert_Float(as_Int(in.surface->primitive - first)));
+    out[0] = convert_Float(as_Int(in.surface->primitive - first));
 }
 
 INLINE void layer_shape_index(LayerInput in, Float *out) {
-    UInt number = gather_uint(in.scene->layer_shapes, in.surface->shape) & (UInt)~LAYER_ONE_PRIMITIVE;
+    UInt number = gather_uint(in.scene->layer_shapes, in.surface->shape);
 #if HAS_INSTANCES
     Int placed = in.path->instance != (UInt)INSTANCE_NONE;
     number = SELECT(placed, in.path->instance + (UInt)in.scene->parameters->layer_first_instance, number);

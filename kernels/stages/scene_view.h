@@ -25,7 +25,7 @@ typedef struct {
     global struct FilmPixel *film;
 #if HAS_LAYERS
     global double *layer_film;
-    global const uint *layer_shapes; // number of each shape, with LAYER_ONE_PRIMITIVE
+    global const uint *layer_shapes; // number of each shape
 #endif
 #if HAS_MOMENTS
     global double *moment_film;
