@@ -6,6 +6,7 @@
 #include "bsdf/material.h"
 #include "layers/uv_partials.h"
 #include "stages/camera.h"
+#include "stages/scattering_surface.h"
 
 typedef struct {
     Block block;
@@ -15,15 +16,26 @@ typedef struct {
     UvPartials partials;    // of layers that ask for them
 } LayerInput;
 
+INLINE SampleId layer_sample(LayerInput in) { return path_sample_id(in.block, in.path->id, in.scene->parameters->seed); }
+
 INLINE void put_vec3(Float *out, Vec3 v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 
 INLINE void layer_coverage(LayerInput in, Float *out) { out[0] = ONE; }
 INLINE void layer_depth(LayerInput in, Float *out) { out[0] = in.path->t; }
 INLINE void layer_position(LayerInput in, Float *out) { put_vec3(out, in.surface->position); }
 INLINE void layer_geo_normal(LayerInput in, Float *out) { put_vec3(out, in.surface->normal); }
-INLINE void layer_sh_normal(LayerInput in, Float *out) { put_vec3(out, in.surface->frame.n); }
 INLINE void layer_dp_du(LayerInput in, Float *out) { put_vec3(out, in.partials.dp_du); }
 INLINE void layer_dp_dv(LayerInput in, Float *out) { put_vec3(out, in.partials.dp_dv); }
+
+// After the normal maps of the material, on the side of the surface's own.
+INLINE void layer_sh_normal(LayerInput in, Float *out) {
+    Vec3 n = in.surface->frame.n;
+#if HAS_NORMAL_MAPS
+    Vec3 mapped = load_scattering_surface(in.scene, in.path, layer_sample(in)).frame.n;
+    n = select3(dot3(mapped, n) < 0.0f, negate(mapped), mapped);
+#endif
+    put_vec3(out, n);
+}
 
 INLINE void layer_uv(LayerInput in, Float *out) {
     out[0] = in.surface->u;
@@ -33,8 +45,7 @@ INLINE void layer_uv(LayerInput in, Float *out) {
 // The reflectance of a base under a coat, else what the lobes send along the normal: pi times the BSDF there. A side that is black
 // only because the material has one has its albedo.
 INLINE void layer_albedo(LayerInput in, Float *out) {
-    Surface seen = *in.surface;
-    choose_side(in.scene->surfaces, in.path, &seen);
+    Surface seen = load_scattering_surface(in.scene, in.path, layer_sample(in));
     UInt front = GATHER_UINT_FIELD(in.scene->surfaces.shapes, Shape, seen.shape, front_material);
     seen.material = SELECT(seen.material == (UInt)WAVELOBE_NONE, front, seen.material);
     MaterialInput material = material_input(&seen, in.scene->surfaces.materials, in.scene->textures, in.scene->texels);

@@ -4,6 +4,7 @@
 
 #include "core/math.h"
 #include "shapes/surface.h"
+#include "shapes/triangle_tangents.h"
 
 typedef struct {
     Vec3 dp_du, dp_dv;
@@ -17,19 +18,8 @@ INLINE UvPartials triangle_partials(SurfaceView s, UInt slot, const Surface *sur
     UvPartials p = {e1, e2};
 #if HAS_UVS
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, surface->shape, first_uv);
-    Int textured = first_uv != (UInt)WAVELOBE_NONE;
     UInt triangle = surface->primitive - GATHER_UINT_FIELD(s.shapes, Shape, surface->shape, first_primitive);
-    UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Float u0 = gather(s.uvs, at), v0 = gather(s.uvs + 1, at);
-    Float du1 = gather(s.uvs + 2, at) - u0, dv1 = gather(s.uvs + 3, at) - v0;
-    Float du2 = gather(s.uvs + 4, at) - u0, dv2 = gather(s.uvs + 5, at) - v0;
-    Float det = difference_of_products(du1, dv2, dv1, du2);
-    Int spans = det != 0.0f;
-    Frame along = frame_of_normal(normalize_any_scale(cross3(e1, e2)));
-    Vec3 dp_du = select3(spans, scale(sub(scale(e1, dv2), scale(e2, dv1)), 1.0f / det), along.s);
-    Vec3 dp_dv = select3(spans, scale(sub(scale(e2, du1), scale(e1, du2)), 1.0f / det), along.t);
-    p.dp_du = select3(textured, dp_du, e1);
-    p.dp_dv = select3(textured, dp_dv, e2);
+    triangle_tangents(s.uvs, first_uv, triangle, normalize_any_scale(cross3(e1, e2)), &p.dp_du, &p.dp_dv);
 #endif
     return p;
 }
