@@ -68,7 +68,8 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 }
 
 // load_rgb(in, diffuse) and load_float(in, alpha_u): a parameter of each lane, textured or not. The scaled forms are products of
-// the constant and the texture, where load_rgb takes the texture in its place.
+// the constant and the texture, where load_rgb takes the texture in its place. load_record_rgb and load_record_float read another
+// kind of record than Material.
 #if HAS_TEXTURES
 #include "bsdf/texture.h"
 #else
@@ -76,6 +77,8 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 #define load_float(in, field) constant_float(in, WORD_OFFSET(Material, field))
 #define load_scaled_rgb(in, field) load_rgb(in, field)
 #define load_scaled_float(in, field) load_float(in, field)
+#define load_record_rgb(in, type, field) constant_rgb(in, WORD_OFFSET(type, field))
+#define load_record_float(in, type, field) constant_float(in, WORD_OFFSET(type, field))
 #endif
 
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))
