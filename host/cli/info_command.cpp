@@ -17,7 +17,8 @@ namespace {
 // In the order of the variants of MaterialModel and Emitter.
 constexpr std::array material_names{"diffuse",       "conductor",       "roughconductor", "dielectric",
                                     "thindielectric", "roughdielectric", "plastic",        "roughplastic",   "phong",
-                                    "metallicroughness", "normalmap", "bumpmap", "twosided", "blendbsdf"};
+                                    "metallicroughness", "normalmap", "bumpmap", "twosided", "blendbsdf",
+                                    "principled", "principledthin", "ward"};
 static_assert(material_names.size() == std::variant_size_v<MaterialModel>);
 constexpr std::array emitter_names{"constant", "envmap", "point", "spot", "directional", "projector"};
 static_assert(emitter_names.size() == std::variant_size_v<Emitter>);

@@ -140,6 +140,7 @@ void write_lobes(SourceWriter& out, const FeatureSet& f) {
         out.define_unsigned(std::string("LOBE_") + lobe_list[i].macro, static_cast<long>(i));
     }
     for (std::size_t i = 0; i < lobe_list.size(); ++i) {
+        out.define(std::string("HAS_LOBE_") + lobe_list[i].macro, has_bit(f.lobes, i));
         if (has_bit(f.lobes, i)) out.include(std::string("bsdf/") + lobe_list[i].name + ".h");
     }
     constexpr std::array<const char*, 3> lists = {"SCENE_DELTA_LOBES", "SCENE_GLOSSY_LOBES", "SCENE_DIFFUSE_LOBES"};

@@ -178,6 +178,15 @@ void MaterialFlattener::fill(DeviceMaterial& out, const Phong& m) {
     out.exponent = scalar(m.exponent);
 }
 
+void MaterialFlattener::fill(DeviceMaterial& out, const Ward& m) {
+    out.lobes = bit(LOBE_WARD) | bit(LOBE_LAMBERT);
+    out.diffuse = rgb(m.diffuse_reflectance);
+    out.specular = rgb(m.specular_reflectance);
+    fill_roughness(out, m.alpha_u, m.alpha_v, Distribution::ggx);
+    if (m.variant == Ward::Variant::ward) out.flags |= MATERIAL_WARD_CLASSIC;
+    if (m.variant == Ward::Variant::ward_duer) out.flags |= MATERIAL_WARD_DUER;
+}
+
 void MaterialFlattener::nest(DeviceNesting& out, std::uint32_t kind, const NestedMaterial& first, const NestedMaterial& second) {
     out.flags = kind;
     out.inner[0] = add(first.get());
@@ -215,14 +224,6 @@ void MaterialFlattener::fill(DeviceNesting& out, const Blend& m) {
     nest(out, MATERIAL_BLEND, m.first, m.second);
     out_.features.blends = true;
     out.weight = scalar(m.weight);
-}
-
-template <class Extension>
-std::uint32_t MaterialFlattener::add_extension(const Extension& extension) {
-    const std::size_t first = out_.materials.size();
-    out_.materials.resize(first + (sizeof(Extension) + sizeof(DeviceMaterial) - 1) / sizeof(DeviceMaterial));
-    std::memcpy(static_cast<void*>(&out_.materials[first]), &extension, sizeof(Extension));
-    return static_cast<std::uint32_t>(first);
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {

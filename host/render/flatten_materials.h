@@ -1,6 +1,7 @@
 // Materials and textures as the kernels see them.
 #pragma once
 
+#include <cstring>
 #include <map>
 
 #include "render/flatten.h"
@@ -35,6 +36,10 @@ private:
     void fill(DeviceMaterial& out, const RoughPlastic& m);
     void fill(DeviceMaterial& out, const Phong& m);
     void fill(DeviceMaterial& out, const MetallicRoughness& m);
+    void fill(DeviceMaterial& out, const Principled& m);  // these two in flatten_principled.cpp
+    void fill(DeviceMaterial& out, const PrincipledThin& m);
+    void fill(DeviceMaterial& out, const Ward& m);
+    PrincipledParameters principled_parameters(DeviceMaterial& out, const PrincipledSurface& surface);
     // Materials that hold others.
     void fill(DeviceNesting& out, const NormalMapped& m);
     void fill(DeviceNesting& out, const BumpMapped& m);
@@ -48,7 +53,12 @@ private:
 
     // Its record (DeviceMaterial::extension).
     template <class Extension>
-    std::uint32_t add_extension(const Extension& extension);
+    std::uint32_t add_extension(const Extension& extension) {
+        const std::size_t first = out_.materials.size();
+        out_.materials.resize(first + (sizeof(Extension) + sizeof(DeviceMaterial) - 1) / sizeof(DeviceMaterial));
+        std::memcpy(static_cast<void*>(&out_.materials[first]), &extension, sizeof(Extension));
+        return static_cast<std::uint32_t>(first);
+    }
 
     const Scene& scene_;
     DeviceScene& out_;

@@ -72,6 +72,7 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 
 // load_rgb(in, diffuse) and load_float(in, alpha_u): a parameter of each lane, textured or not. The scaled forms are products of
 // the constant and the texture, where load_rgb takes the texture in its place; those of an extension are such products.
+// load_record_rgb and load_record_float read another kind of record than Material.
 #if HAS_TEXTURES
 #include "bsdf/texture.h"
 #else
@@ -81,6 +82,8 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 #define load_scaled_float(in, field) load_float(in, field)
 #define load_extension_rgb(in, there, type, field) constant_rgb(in, WORD_OFFSET(type, field))
 #define load_extension_float(in, there, type, field) constant_float(in, WORD_OFFSET(type, field))
+#define load_record_rgb(in, type, field) constant_rgb(in, WORD_OFFSET(type, field))
+#define load_record_float(in, type, field) constant_float(in, WORD_OFFSET(type, field))
 #endif
 
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))

@@ -11,12 +11,7 @@
 #if HAS_BLENDS
 // The second material with the probability of its weight. The rest of the random number serves the next choice.
 INLINE UInt choose_of_blend(MaterialInput in, Float *u) {
-#if HAS_TEXTURES
-    Float weight = parameter_float(in, WORD_OFFSET(Nesting, weight), 0);
-#else
-    Float weight = nesting_word(in, weight.value);
-#endif
-    weight = LESSER(GREATER(weight, ZERO), ONE);
+    Float weight = LESSER(GREATER(load_record_float(in, Nesting, weight), ZERO), ONE);
     Int second = *u < weight;
     // Below 1, which rounding may reach.
     *u = LESSER(SELECT(second, *u / weight, (*u - weight) / (1.0f - weight)), (Float)0x1.fffffep-1f);
@@ -38,11 +33,7 @@ INLINE UInt choose_of_sides(MaterialInput in, Int mine, Surface *s) {
 #if HAS_NORMAL_MAPS
 // The normal of a map in the frame of the tangent along u, of any length.
 INLINE Vec3 normal_of_map(MaterialInput in) {
-#if HAS_TEXTURES
-    Rgb color = parameter_rgb(in, WORD_OFFSET(Nesting, normal), 0);
-#else
-    Rgb color = constant_rgb(in, WORD_OFFSET(Nesting, normal));
-#endif
+    Rgb color = load_record_rgb(in, Nesting, normal);
     Float along = nesting_word(in, scale);
     return vec3(along * madd(color.x, (Float)2.0f, (Float)-1.0f), along * madd(color.y, (Float)2.0f, (Float)-1.0f),
                 madd(color.z, (Float)2.0f, (Float)-1.0f));

@@ -208,6 +208,8 @@ INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
 
 #define load_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 0)
 #define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 0)
+#define load_record_rgb(in, type, field) parameter_rgb(in, WORD_OFFSET(type, field), 0)
+#define load_record_float(in, type, field) parameter_float(in, WORD_OFFSET(type, field), 0)
 #define load_scaled_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 1)
 #define load_scaled_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 1)
 

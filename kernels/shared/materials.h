@@ -21,8 +21,10 @@
 #define MATERIAL_NESTS (MATERIAL_NORMAL_MAP | MATERIAL_BUMP_MAP | MATERIAL_SIDES | MATERIAL_BLEND)
 #define MATERIAL_KEEPS_FRAME (MATERIAL_TRANSMISSIVE | MATERIAL_NESTS) // is not turned over when seen from behind
 #define MATERIAL_FLIPS_NORMALS 128u    // maps: normals that face away from the viewer are mirrored
+#define MATERIAL_WARD_CLASSIC 512u     // Ward's normalization: by the root of both cosines
+#define MATERIAL_WARD_DUER 1024u       // ... by both cosines; otherwise that of bounded albedo
 #define MATERIAL_SHADES_TERMINATOR 256u // maps: softens the edge where the mapped normal sees light and the surface does not
-#define MATERIAL_THIN 512u         // transmissive: the media on both sides are the same
+#define MATERIAL_THIN 2048u            // transmissive: the media on both sides are the same
 
 // A parameter: a constant, scaled by nothing, or a texture (index) that replaces it.
 struct TexturedRgb {
@@ -93,6 +95,13 @@ struct MetallicRoughnessLayers {
     struct TexturedRgb specular_color;   // ... which is this, at most one
 };
 WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 48);
+// Principled materials: what Material has no room for.
+struct PrincipledParameters {
+    struct TexturedFloat anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;
+    struct TexturedFloat clearcoat, clearcoat_gloss; // not of thin ones
+    struct TexturedFloat diff_trans, eta;            // thin ones: 0 to 2; index of what they are made of
+};
+WAVELOBE_CHECK_SIZE(PrincipledParameters, 80);
 
 struct Texture {
     Uint32 kind;         // TEXTURE_x

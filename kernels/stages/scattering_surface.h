@@ -11,8 +11,9 @@
 INLINE Surface load_scattering_surface(const SceneView *scene, const TracedPath *path, SampleId sample) {
     Surface surface = load_surface(scene->surfaces, path);
 #if HAS_NESTING
-    Float u = ZERO, unused;
+    Float u = ZERO;
 #if HAS_BLENDS
+    Float unused;
     sample_2d(sample, vertex_pair(path->depth, PAIR_BLEND), &u, &unused);
 #endif
     enter_nested_materials(&surface, scene->surfaces.materials, scene->textures, scene->texels, u);

@@ -28,6 +28,22 @@ inline RoughTransmittance falling_transmittance() {
     return table;
 }
 
+// Of principled materials: opaque and plain, opaque with all there is, partly refracting, thin. Their records follow that of
+// the transmittance.
+inline std::vector<PrincipledParameters> principled_extensions() {
+    const auto value = [](float v) { return TexturedFloat{v, WAVELOBE_NONE}; };
+    const auto set = [&](float anisotropic, float spec_trans, float spec_tint, float sheen, float sheen_tint, float flatness,
+                         float clearcoat, float gloss, float diff_trans, float eta) {
+        return PrincipledParameters{value(anisotropic), value(spec_trans), value(spec_tint), value(sheen), value(sheen_tint),
+                                    value(flatness), value(clearcoat), value(gloss), value(diff_trans), value(eta)};
+    };
+    return {set(0, 0, 0, 0, 0, 0, 0, 0, 0, 1.5F), set(0.5F, 0, 0.4F, 0.1F, 0.5F, 0.3F, 0.8F, 0.3F, 0.4F, 1.3F),
+            set(0.2F, 0.7F, 0.2F, 0.05F, 0.3F, 0.5F, 0.5F, 0.1F, 1.4F, 1.6F)};
+}
+
+constexpr Uint32 first_principled_extension =
+    (sizeof(RoughTransmittance) + sizeof(::Material) - 1) / sizeof(::Material);
+
 inline MetallicRoughnessLayers layers_of(float coat, float coat_roughness, float transmission, float specular, Packed3 specular_color) {
     return {{coat, WAVELOBE_NONE}, {coat_roughness, WAVELOBE_NONE}, {transmission, WAVELOBE_NONE}, {specular, WAVELOBE_NONE}, {specular_color, WAVELOBE_NONE}};
 }
@@ -43,6 +59,7 @@ inline const std::vector<::Material>& lobe_extensions() {
     static const std::vector<::Material> records = [] {
         std::vector<::Material> list;
         append_extension(list, falling_transmittance());
+        for (const PrincipledParameters& p : principled_extensions()) append_extension(list, p);
         for (const MetallicRoughnessLayers& layers : layer_sets()) append_extension(list, layers);
         return list;
     }();
@@ -51,8 +68,7 @@ inline const std::vector<::Material>& lobe_extensions() {
 
 // The record of a set of layers, for Material::extension.
 inline std::uint32_t layers_record(std::size_t set) {
-    const std::size_t before = (sizeof(RoughTransmittance) + sizeof(::Material) - 1) / sizeof(::Material);
-    return static_cast<std::uint32_t>(before + set);
+    return static_cast<std::uint32_t>(first_principled_extension + principled_extensions().size() + set);
 }
 
 template <class Extension>

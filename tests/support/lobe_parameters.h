@@ -13,6 +13,7 @@ struct LobeParameters {
     std::string name;
     Material material;
     double width = 1.0;  // angular scale of the lobe in radians: narrow ones are binned about their axes
+    bool reciprocal = true;  // the thin principled material is not: a microfacet transmits behind itself alone
 };
 
 // A white material: all of it that a lobe does not set is neutral.
@@ -78,6 +79,15 @@ inline Material layered(Material m, std::size_t set) {
     return m;
 }
 
+// With the parameters of one of principled_extensions().
+inline Material principled(Material m, Uint32 extension, float metallic, float roughness, float eta, Uint32 flags = 0) {
+    m = dielectric(m, eta, flags);
+    m.metallic.value = metallic;
+    m.alpha_u.value = roughness;
+    m.extension = first_principled_extension + extension;
+    return m;
+}
+
 // Cosine-weighted mean Fresnel reflectance from inside, by the midpoint rule over squared cosines.
 inline float internal_reflectance(float eta) {
     constexpr int steps = 10000;
@@ -99,6 +109,8 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
     const Packed3 gold_k{3.983F, 2.386F, 1.603F};
     const Material white = white_material();
     const Material coloured = coloured_material();
+    Material faint = coloured;
+    faint.specular.value = {1e-3F, 5e-4F, 2e-4F};
     const Material gold = conductor(coloured, gold_eta, gold_k);
     static const std::map<std::string, std::vector<LobeParameters>> sets{
         {"mirror", {{"ideal", white}, {"gold", gold}}},
@@ -156,6 +168,26 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"smoothest_coat", layered(metallic_roughness(white, 0.0F, 0.0F), 3), 1e-4}}},
         {"layered_metallic_roughness_base",
          {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},
+        // But for the balanced one, Ward's highlights are not bounded: faint ones gain nothing.
+        {"ward",
+         {{"balanced", rough(coloured, 0.3F, 0.3F)},
+          {"stretched", rough(coloured, 0.2F, 0.5F)},
+          {"classic", rough(faint, 0.2F, 0.4F, MATERIAL_WARD_CLASSIC)},
+          {"duer", rough(faint, 0.3F, 0.3F, MATERIAL_WARD_DUER)}}},
+        {"principled",
+         {{"plain", principled(coloured, 0, 0.0F, 0.5F, 1.5F)},
+          {"metal", principled(coloured, 0, 1.0F, 0.6F, 1.5F)},
+          {"rich", principled(coloured, 1, 0.4F, 0.5F, 1.4F)},
+          {"glass", principled(white, 2, 0.1F, 0.6F, 1.5F, MATERIAL_TRANSMISSIVE)},
+          {"bubble", principled(coloured, 2, 0.0F, 0.7F, 1.0F / 1.5F, MATERIAL_TRANSMISSIVE)}}},
+        {"principled_thin",
+         {{"glass", principled(coloured, 2, 0.0F, 0.6F, 1.0F, MATERIAL_TRANSMISSIVE), 1.0, false}}},
+        {"principled_base",
+         {{"plain", principled(coloured, 0, 0.0F, 0.3F, 1.5F)}, {"rich", principled(coloured, 1, 0.3F, 0.8F, 1.5F)}}},
+        {"principled_thin_base",
+         {{"plain", principled(coloured, 0, 0.0F, 0.5F, 1.0F, MATERIAL_TRANSMISSIVE)},
+          {"leaf", principled(coloured, 1, 0.0F, 0.5F, 1.0F, MATERIAL_TRANSMISSIVE)},
+          {"paper", principled(coloured, 2, 0.0F, 0.7F, 1.0F, MATERIAL_TRANSMISSIVE)}}},
         {"lambert", {{"white", white}, {"coloured", coloured}}},
         {"metallic_roughness_base",
          {{"white", metallic_roughness(white, 0.0F, 0.5F)}, {"coloured", metallic_roughness(coloured, 0.4F, 0.5F, 0.2F)}}},

@@ -4,6 +4,7 @@
 
 #include "scene/conductors.h"
 #include "scene/mitsuba/nested_bsdfs.h"
+#include "scene/mitsuba/principled.h"
 #include "scene/mitsuba/values.h"
 
 namespace wavelobe::mitsuba {
@@ -59,9 +60,8 @@ Distribution distribution(Query& query) {
     return query.choice("distribution", {"beckmann", "ggx"}, 0) == 0 ? Distribution::beckmann : Distribution::ggx;
 }
 
-Roughness roughness(Query& query) {
+Roughness alphas(Query& query) {
     Roughness result;
-    result.distribution = distribution(query);
     const bool two = query.has("alpha_u") || query.has("alpha_v");
     if (two && !(query.has("alpha_u") && query.has("alpha_v")))
         query.fault("only one of `alpha_u` and `alpha_v` is given", "give both, or `alpha` alone");
@@ -78,6 +78,12 @@ Roughness roughness(Query& query) {
     const Parameter alpha_v = alpha_of("alpha_v");
     result.alpha_u = two ? alpha_u : alpha;
     result.alpha_v = two ? alpha_v : alpha;
+    return result;
+}
+
+Roughness roughness(Query& query) {
+    Roughness result = alphas(query);
+    result.distribution = distribution(query);
     return result;
 }
 
@@ -147,26 +153,39 @@ Bsdf read_rough_plastic(Query& query) {
     return make(query, m, Sides::front);
 }
 
-// A plugin of Mitsuba 0.x, whose spelling of the names is accepted next to today's.
+// Plugins of Mitsuba 0.x, whose spelling of the names is accepted next to today's.
+Parameter either(Query& query, const std::string& name, const std::string& old_name, double otherwise) {
+    if (query.has(name) && query.has(old_name))
+        query.fault("both `" + name + "` and `" + old_name + "` are given", "keep one of the two");
+    const Parameter old_spelling = reflectance(query, old_name, otherwise);
+    const Parameter new_spelling = reflectance(query, name, otherwise);
+    return query.has(old_name) ? old_spelling : new_spelling;
+}
+
 Bsdf read_phong(Query& query) {
-    const auto either = [&](const std::string& name, const std::string& old_name, double otherwise) {
-        if (query.has(name) && query.has(old_name))
-            query.fault("both `" + name + "` and `" + old_name + "` are given", "keep one of the two");
-        const Parameter old_spelling = reflectance(query, old_name, otherwise);
-        const Parameter new_spelling = reflectance(query, name, otherwise);
-        return query.has(old_name) ? old_spelling : new_spelling;
-    };
-    const Parameter diffuse = either("diffuse_reflectance", "diffuseReflectance", 0.5);
-    const Parameter specular = either("specular_reflectance", "specularReflectance", 0.2);
+    const Parameter diffuse = either(query, "diffuse_reflectance", "diffuseReflectance", 0.5);
+    const Parameter specular = either(query, "specular_reflectance", "specularReflectance", 0.2);
     return make(query, Phong{diffuse, specular, query.scalar_parameter("exponent", 30.0, not_negative)},
                 Sides::front);
+}
+
+Bsdf read_ward(Query& query) {
+    constexpr std::array variants{Ward::Variant::ward, Ward::Variant::ward_duer, Ward::Variant::balanced};
+    Ward m;
+    m.variant = variants[query.choice("variant", {"ward", "ward-duer", "balanced"}, 2)];
+    m.diffuse_reflectance = either(query, "diffuse_reflectance", "diffuseReflectance", 0.5);
+    m.specular_reflectance = either(query, "specular_reflectance", "specularReflectance", 0.2);
+    const Roughness rough = alphas(query);
+    m.alpha_u = rough.alpha_u;
+    m.alpha_v = rough.alpha_v;
+    return make(query, m, Sides::front);
 }
 
 struct Plugin {
     const char* name;
     Bsdf (*read)(Query&);
 };
-constexpr std::array<Plugin, 15> plugins{{
+constexpr std::array<Plugin, 18> plugins{{
     {"blendbsdf", read_blend},
     {"bumpmap", read_bump_map},
     {"conductor", read_conductor},
@@ -177,11 +196,14 @@ constexpr std::array<Plugin, 15> plugins{{
     {"null", read_null},
     {"phong", read_phong},
     {"plastic", read_plastic},
+    {"principled", read_principled},
+    {"principledthin", read_principled_thin},
     {"roughconductor", read_rough_conductor},
     {"roughdielectric", read_rough_dielectric},
     {"roughplastic", read_rough_plastic},
     {"thindielectric", read_thin_dielectric},
     {"twosided", read_twosided},
+    {"ward", read_ward},
 }};
 
 }  // namespace
