@@ -6,6 +6,7 @@
 #include "render/flatten_instances.h"
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
+#include "render/flatten_media.h"
 #include "render/presence.h"
 #include "scene/fault.h"
 #include "tables/filter_table.h"
@@ -36,7 +37,7 @@ Bounds bounds_of_scene(const DeviceScene& scene) {
 
 class Flattener {
 public:
-    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), lights_(materials_, out_) {}
+    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), media_(scene, out_), lights_(materials_, out_) {}
 
     DeviceScene run() {
         const std::vector<std::size_t> groups = groups_in_use();
@@ -101,16 +102,19 @@ private:
         return shape.emitter && (shape.emitter->radiance.texture || shape.emitter->radiance.value != Rgb{0.0F});
     }
 
-    // What is nowhere and does not shine is left out.
-    bool is_there(const Shape& shape) {
+    bool is_visible(const Shape& shape) {
         return emits(shape) || presence_.find(shape.material.opacity) != Presence::absent;
     }
+
+    // What is nowhere and does not shine is left out, unless it parts media.
+    bool is_there(const Shape& shape) { return is_visible(shape) || media_.parts_media(shape); }
 
     // The record of a shape with its materials and its opacity; geometry is added by the caller.
     DeviceShape device_shape(const Shape& shape) {
         DeviceShape s{};
-        s.front_material = materials_.add(shape.material.front);
-        s.back_material = materials_.add(shape.material.back);
+        const bool visible = is_visible(shape);
+        s.front_material = visible ? materials_.add(shape.material.front) : WAVELOBE_NONE;
+        s.back_material = visible ? materials_.add(shape.material.back) : WAVELOBE_NONE;
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
         s.first_uv = WAVELOBE_NONE;
@@ -119,7 +123,7 @@ private:
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
         const std::uint32_t back = classes(s.back_material);
-        s.flags = front | back;
+        s.flags = front | back | media_.add_shape(shape, visible);
         FeatureSet& f = out_.features;
         f.unlike_sides = f.unlike_sides || s.back_material != s.front_material;
         // A black side ends a path in any queue; two sides of different classes must be told apart before.
@@ -129,11 +133,13 @@ private:
             s.first_light = static_cast<std::uint32_t>(out_.lights.size());
             f.textured_emitters = f.textured_emitters || shape.emitter->radiance.texture != nullptr;
         }
-        if (presence_.find(shape.material.opacity) == Presence::whole) {
+        if (!visible || presence_.find(shape.material.opacity) == Presence::whole) {
             out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F});
         } else {
             out_.opacities.push_back(materials_.opacity(shape.material.opacity));
             s.flags |= emits(shape) ? SHAPE_VEILED : SHAPE_MASKED;
+            if (media_.parts_media(shape) && !emits(shape))
+                throw InputError(Fault{"", 0, 0, shape.name, "a shape that is only partly there cannot part media", "make it whole, or null"});
             (emits(shape) ? f.veiled_emitters : f.masks) = true;
         }
         return s;
@@ -194,6 +200,7 @@ private:
     const Scene& scene_;
     DeviceScene out_;
     MaterialFlattener materials_;
+    MediaFlattener media_;
     LightFlattener lights_;
     PresenceFinder presence_;
 };

@@ -197,6 +197,21 @@ struct SurfaceMaterial {
     Opacity opacity{};
 };
 
+// ---- media ---------------------------------------------------------------------------------------
+
+// Absorbs and does not scatter: after a distance d through it exp(-absorption * d) of the light is left.
+struct Medium {
+    Rgb absorption{0.0F};  // 1 / m
+    std::string name;
+};
+
+// What lies on the two sides of a shape: indices into Scene::media, or -1 for vacuum. A ray that leaves the shape is in what
+// is on its side, whatever it was in before.
+struct MediumBoundary {
+    int interior = -1;  // behind the geometric normal
+    int exterior = -1;
+};
+
 // ---- shapes --------------------------------------------------------------------------------------
 
 // World-space triangles, their geometric normal is along cross(p1 - p0, p2 - p0). `normals` (unit,
@@ -226,6 +241,8 @@ struct Shape {
     std::variant<TriangleMesh, AnalyticShape> geometry;
     SurfaceMaterial material;
     std::optional<AreaEmitter> emitter;
+    // Empty: rays stay in the medium they are in. A shape that is nowhere (Opacity) still parts media.
+    std::optional<MediumBoundary> media{};
     bool flip_normals = false;  // analytic shapes only: a reader has already applied it to meshes
     std::string name;
 };
@@ -322,6 +339,8 @@ struct Scene {
     std::vector<ShapeGroup> groups;
     std::vector<Instance> instances;
     std::vector<Emitter> emitters;
+    std::vector<Medium> media;
+    int camera_medium = -1;  // that the camera is in; -1: vacuum
     PerspectiveCamera camera;
     Film film;
     Integrator integrator;

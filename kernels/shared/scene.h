@@ -26,6 +26,8 @@ WAVELOBE_CHECK_SIZE(Shape, 36);
 #define SHAPE_EMITS 8u
 #define SHAPE_MASKED 16u // rays ask for its opacity
 #define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
+#define SHAPE_PARTS_MEDIA 64u // says which media are on its two sides
+#define SHAPE_CLEAR 128u // parts media and is not there otherwise: rays go on behind it
 
 // Perspective camera, film window, and the integrator's limits.
 struct RenderParameters {
@@ -41,8 +43,9 @@ struct RenderParameters {
     Uint32 finite_light_count; // with a light tree: these are in it, the rest is at infinity
     Uint32 triangle_count;
     struct FewSummary few; // of scenes without a hierarchy
+    Uint32 camera_medium; // that the camera is in
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 140);
+WAVELOBE_CHECK_SIZE(RenderParameters, 144);
 
 // What a pixel holds. Sums are in double: the mean of ten million samples is as good as each of them.
 struct FilmPixel {

@@ -226,7 +226,8 @@ TEST(MitsubaReader, VolpathIsPathWithoutMedia) {
     const auto faults = folder.element_faults(
         R"(<integrator type="volpath"/><shape type="cube"><medium type="homogeneous" name="interior"/></shape>)");
     ASSERT_EQ(faults.size(), 1U);
-    EXPECT_NE(faults[0].message.find("media"), std::string::npos);
+    EXPECT_NE(faults[0].message.find("scattering media"), std::string::npos);
+    EXPECT_EQ(faults[0].line, 1);
 }
 
 std::string shared_scene(const std::string& name) {

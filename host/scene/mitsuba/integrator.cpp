@@ -37,11 +37,11 @@ struct Plugin {
     const char* name;
     Integrator (*read)(Query&);
 };
-// Without media, and those are refused where they stand, `volpath` computes what `path` does.
-constexpr std::array<Plugin, 3> plugins{{
+constexpr std::array<Plugin, 4> plugins{{
     {"direct", read_direct},
     {"path", read_path},
     {"volpath", read_path},
+    {"volpathmis", read_path},
 }};
 
 }  // namespace
@@ -53,10 +53,13 @@ void read_integrator(Context& context, const Object& object) {
     if (++context.integrators > 1) query.fault("the scene has an integrator already", "keep one of them");
     Integrator integrator = plugin->read(query);
     integrator.hide_emitters = query.boolean("hide_emitters", false);
+    if (sees_media(object.type)) query.accept({"use_spectral_mis"});
     query.accept({"block_size", "samples_per_pass", "timeout"});
     query.finish();
     context.scene.integrator = integrator;
 }
+
+bool sees_media(const std::string& integrator) { return integrator.starts_with("volpath"); }
 
 std::vector<std::string> integrator_types() { return names_of(plugins); }
 

@@ -190,9 +190,9 @@ std::optional<Shape> build_shape(Context& context, const Object& object) {
     if (emitter != nullptr) shape.emitter = read_area_emitter(context, *emitter);
     const Bsdf bsdf =
         bsdf_object != nullptr ? read_bsdf(context, *bsdf_object) : default_bsdf(context, emitter != nullptr);
-    for (const Child* medium : query.children("medium"))
-        context.faults.add(medium->place, object.label(), "participating media are not supported",
-                           "remove the medium");
+    shape.media = read_boundary(query);
+    if (shape.media && (bsdf.opacity.value.texture || (bsdf.opacity.value.value.r > 0.0F && bsdf.opacity.value.value.r < 1.0F)))
+        query.fault("a mask cannot bound a medium", "use a BSDF that is all there, or `null`");
     query.accept({"silhouette_sampling_weight"});
     query.finish();
     if (!usable || bsdf.front == nullptr) return {};
