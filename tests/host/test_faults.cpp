@@ -145,7 +145,7 @@ TEST(Faults, Structure) {
     expect_fault("<shape type=\"obj\"><string name=\"filename\" value=\"absent.obj\"/></shape>", "does not exist");
     expect_fault("<emitter type=\"constant\"><texture type=\"checkerboard\" name=\"radiance\"/></emitter>",
                  "cannot vary");
-    expect_fault("<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\"/></shape>", "participating media are not supported");
+    expect_fault("<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\"/></shape>", "scattering media are not supported");
     expect_fault("<float name=\"gamma\" value=\"1\"/>", "unknown property `gamma`");
 }
 
