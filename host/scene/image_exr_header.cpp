@@ -1,5 +1,6 @@
 // The headers of OpenEXR files, looked through before the library allocates what they claim.
 #include <algorithm>
+#include <array>
 
 #include "scene/image_formats.h"
 
@@ -13,6 +14,18 @@ constexpr double most_inflation = 4096.0;
 constexpr double chunk_rows = 256.0;
 constexpr double small_chunk = 0x1p28;
 constexpr std::size_t longest_name = 255;
+
+// The library reads these whole, whatever size the header gives them.
+struct FixedType {
+    const char* name;
+    std::uint32_t size;
+};
+constexpr std::array<FixedType, 26> fixed_types{{
+    {"box2i", 16}, {"box2f", 16}, {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1}, {"double", 8}, {"envmap", 1},
+    {"float", 4}, {"int", 4}, {"keycode", 28}, {"lineOrder", 1}, {"m33d", 72}, {"m33f", 36}, {"m44d", 128}, {"m44f", 64},
+    {"rational", 8}, {"tiledesc", 9}, {"timecode", 8}, {"v2d", 16}, {"v2f", 8}, {"v2i", 8}, {"v3d", 24}, {"v3f", 12}, {"v3i", 12},
+    {"v4f", 16}, {"v4d", 32},
+}};
 
 class HeaderCheck {
 public:
@@ -55,16 +68,35 @@ private:
             bytes += number(behind + 1) == 1 ? 2.0 : 4.0;
             at = behind + 17;
         }
+        if (at + 1 != end) fail("the list of channels has the wrong length");
         return bytes;
+    }
+
+    // Each string behind its length.
+    void check_strings(std::size_t at, std::size_t end) const {
+        while (at < end) {
+            const std::uint32_t length = number(at);
+            if (end - at < 4 || length > end - at - 4) fail("a list of strings is cut short");
+            at += 4 + std::size_t{length};
+        }
+    }
+
+    void check_preview(std::uint32_t size) const {
+        const std::uint64_t pixels = size < 8 ? 0 : std::uint64_t{number(position_)} * number(position_ + 4);
+        if (size < 8 || pixels > content_.size() || pixels * 4 + 8 != size) fail("the preview has the wrong size");
     }
 
     void check_part() {
         double width = 0.0, height = 0.0, bytes = 0.0, tile_pixels = 0.0;
         for (std::string key = name(); !key.empty(); key = name()) {
-            name();  // its type
+            const std::string type = name();
             const std::uint32_t size = number(position_);
             position_ += 4;
             if (size > content_.size() - position_) fail("`" + key + "` is longer than the file");
+            for (const FixedType& fixed : fixed_types)
+                if (type == fixed.name && size != fixed.size) fail("`" + key + "` has the wrong size");
+            if (type == "stringvector") check_strings(position_, position_ + size);
+            if (type == "preview") check_preview(size);
             const auto signed_at = [&](std::size_t offset) { return static_cast<double>(static_cast<std::int32_t>(number(position_ + offset))); };
             if (key == "dataWindow" && size == 16) {
                 width = signed_at(8) - signed_at(0) + 1.0;
