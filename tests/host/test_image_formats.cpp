@@ -139,6 +139,19 @@ TEST(ImageFormats, OpenExrOfLuminanceAndChroma) {
     }
 }
 
+// Found by fuzzing: the library would take gigabytes.
+TEST(ImageFormats, OpenExrHeadersThatClaimTooMuch) {
+    for (const char* name : {"attribute_longer_than_file", "attribute_of_wrong_size", "attribute_of_wrong_size_2"}) {
+        const std::string path = std::string(WAVELOBE_SOURCE_DIR) + "/tests/fuzz/corpus/exr/" + name + ".exr";
+        try {
+            load_image(path, Transfer::of_format);
+            FAIL() << name;
+        } catch (const InputError& error) {
+            EXPECT_NE(error.faults().at(0).message.find("at byte"), std::string::npos) << error.faults()[0].message;
+        }
+    }
+}
+
 TEST(ImageFormats, PixmapsAndFloatMaps) {
     EXPECT_EQ(colours_of("a", "P3 2 1 # two\n255\n255 0 51 5 4 3\n"), (std::vector<float>{1, 0, 0.2F, 5 / 255.0F, 4 / 255.0F, 3 / 255.0F}));
     EXPECT_EQ(colours_of("a", "P2 1 1 4 2 "), (std::vector<float>{0.5F, 0.5F, 0.5F}));
