@@ -68,7 +68,7 @@ std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
            bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.colors) +
            bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
            bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
-           bytes_of(scene.texels) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
+           bytes_of(scene.texels) + bytes_of(scene.media) + bytes_of(scene.shape_media) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
            bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
 }
 
@@ -101,6 +101,8 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("instances", scene.instances);
     add("textures", scene.textures);
     add("texels", scene.texels.empty() && !scene.textures.empty() ? std::vector<float>(1) : scene.texels);
+    add("media", scene.media);
+    add("shape_media", scene.shape_media.empty() && !scene.media.empty() ? std::vector<ShapeMedia>(1) : scene.shape_media);
     add("lights", scene.lights);
     add("light_tree", scene.light_tree);
     add("environment", scene.environment);

@@ -119,6 +119,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HIDE_EMITTERS", f.hide_emitters);
     out.define("HAS_MASKS", f.masks);
     out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
+    out.define("HAS_MEDIA", f.media);
+    out.define("HAS_CLEAR_BOUNDARIES", f.clear_boundaries);
     out.define("HAS_OPACITY", f.masks || f.veiled_emitters);
     out.define("HAS_DELTA_LOBES", f.has_lobe_class(LOBE_CLASS_DELTA));
     out.define("HAS_GLOSSY_LOBES", f.has_lobe_class(LOBE_CLASS_GLOSSY));
@@ -267,6 +269,8 @@ std::vector<std::string> FeatureSet::names() const {
     add(error_estimate, "error_estimate");
     add(masks, "masks");
     add(veiled_emitters, "veiled_emitters");
+    add(media, "media");
+    add(clear_boundaries, "clear_boundaries");
     add(light_tree, "light_tree");
     add(few_triangles, "few_triangles");
     return out;
@@ -322,7 +326,7 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.instances ? 1 : 0);
+    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.instances ? 1 : 0) + (features.media ? 1 : 0);
     const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;
@@ -330,7 +334,7 @@ std::size_t block_words(const FeatureSet& features, int block_slots) {
     for (const std::uint32_t c : {LOBE_CLASS_DELTA, LOBE_CLASS_GLOSSY, LOBE_CLASS_DIFFUSE}) {
         if (features.has_lobe_class(c)) ++queues;
     }
-    return stride * (fields + queues * traced + SHADOW_FIELDS) +
+    return stride * (fields + queues * traced + SHADOW_FIELDS + (features.media ? 1 : 0)) +
            std::size_t{3} * TILE_PIXELS * BLOCK_SAMPLES;
 }
 

@@ -70,6 +70,8 @@ struct FeatureSet {
     bool veiled_emitters = false;  // paths go on behind some emitters
     bool light_range = false;  // some point or spot light reaches only so far
     bool smooth_cones = false;
+    bool media = false;            // some of space absorbs
+    bool clear_boundaries = false; // some shapes part media and are not there otherwise
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack

@@ -7,6 +7,7 @@
 #include "render/flatten_layers.h"
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
+#include "render/flatten_media.h"
 #include "render/presence.h"
 #include "render/vertex_coordinates.h"
 #include "scene/fault.h"
@@ -38,7 +39,7 @@ Bounds bounds_of_scene(const DeviceScene& scene) {
 
 class Flattener {
 public:
-    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), lights_(materials_, out_) {}
+    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), media_(scene, out_), lights_(materials_, out_) {}
 
     DeviceScene run() {
         const std::vector<std::size_t> groups = groups_in_use();
@@ -107,16 +108,19 @@ private:
         return shape.emitter && (shape.emitter->radiance.texture || shape.emitter->radiance.value != Rgb{0.0F});
     }
 
-    // What is nowhere and does not shine is left out.
-    bool is_there(const Shape& shape) {
+    bool is_visible(const Shape& shape) {
         return (emits(shape) && shape.emitter->sampled) || presence_.find(shape) != Presence::absent;
     }
+
+    // What is nowhere and does not shine is left out, unless it parts media.
+    bool is_there(const Shape& shape) { return is_visible(shape) || media_.parts_media(shape); }
 
     // The record of a shape with its materials and its opacity; geometry is added by the caller.
     DeviceShape device_shape(const Shape& shape) {
         DeviceShape s{};
-        s.front_material = materials_.add(shape.material.front);
-        s.back_material = materials_.add(shape.material.back);
+        const bool visible = is_visible(shape);
+        s.front_material = visible ? materials_.add(shape.material.front) : WAVELOBE_NONE;
+        s.back_material = visible ? materials_.add(shape.material.back) : WAVELOBE_NONE;
         s.first_primitive = static_cast<std::uint32_t>(out_.primitive_shapes.size());
         s.first_normal = WAVELOBE_NONE;
         s.first_uv = s.first_second_uv = WAVELOBE_NONE;
@@ -125,7 +129,7 @@ private:
         s.triangles_per_light = 1;
         const std::uint32_t front = classes(s.front_material);
         const std::uint32_t back = classes(s.back_material);
-        s.flags = front | back;
+        s.flags = front | back | media_.add_shape(shape, visible);
         if (shape.material.sided_by_winding) s.flags |= SHAPE_SIDED_BY_WINDING;
         FeatureSet& f = out_.features;
         f.sides_by_winding = f.sides_by_winding || shape.material.sided_by_winding;
@@ -138,12 +142,14 @@ private:
             f.unsampled_emitters = f.unsampled_emitters || (s.flags & (SHAPE_UNSAMPLED | SHAPE_EMITS_BEHIND)) != 0;
             f.textured_emitters = f.textured_emitters || shape.emitter->radiance.texture != nullptr;
         }
-        if (presence_.find(shape) == Presence::whole) {
+        if (!visible || presence_.find(shape) == Presence::whole) {
             out_.opacities.push_back({{1.0F, WAVELOBE_NONE}, 1.0F, -1.0F, WAVELOBE_NONE, WAVELOBE_NONE});
         } else {
             out_.opacities.push_back(materials_.opacity(shape.material.opacity));
             const bool veiled = emits(shape) && shape.emitter->sampled;
             s.flags |= veiled ? SHAPE_VEILED : SHAPE_MASKED;
+            if (media_.parts_media(shape) && !veiled)
+                throw InputError(Fault{"", 0, 0, shape.name, "a shape that is only partly there cannot part media", "make it whole, or null"});
             (veiled ? f.veiled_emitters : f.masks) = true;
         }
         return s;
@@ -202,6 +208,7 @@ private:
     const Scene& scene_;
     DeviceScene out_;
     MaterialFlattener materials_;
+    MediaFlattener media_;
     LightFlattener lights_;
     PresenceFinder presence_;
 };

@@ -8,6 +8,7 @@
 #include "render/features.h"
 #include "scene/scene.h"
 #include "shared/lights.h"
+#include "shared/media.h"
 #include "shared/scene.h"
 
 namespace wavelobe {
@@ -19,6 +20,7 @@ using DeviceTexture = ::Texture;
 using DeviceShape = ::Shape;
 using DeviceOpacity = ::Opacity;
 using DeviceInstance = ::Instance;
+using DeviceMedium = ::Medium;
 
 // What a hierarchy is built over: consecutive triangles and analytic shapes.
 struct GeometryRange {
@@ -51,6 +53,10 @@ struct DeviceScene {
     std::vector<DeviceOpacity> opacities;  // one a shape, or none at all
     std::vector<DeviceTexture> textures;
     std::vector<float> texels;
+
+    // media; both empty where nothing absorbs
+    std::vector<DeviceMedium> media;      // vacuum first
+    std::vector<ShapeMedia> shape_media;  // one a shape
 
     // light
     std::vector<Light> lights;      // with a tree: those with a place first

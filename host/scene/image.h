@@ -1,4 +1,4 @@
-// Images from files: PNG, JPEG, OpenEXR and Radiance HDR, told apart by their first bytes.
+// Images from files: PNG, JPEG, OpenEXR, Radiance HDR, PFM, PPM, BMP and TGA, told apart by their first bytes.
 #pragma once
 
 #include <string>

@@ -13,6 +13,9 @@ namespace wavelobe {
 
 namespace {
 
+// A bit for each block of 16 x 16 pixels.
+constexpr double most_pixels_a_byte = 8.0 * 256.0;
+
 // Everything a decoding needs lives here, so that a jump out of libjpeg skips no destructor.
 struct Decoding {
     jpeg_decompress_struct jpeg{};
@@ -48,7 +51,10 @@ bool read_header(Decoding& decoding, const std::string& content) {
     decoding.jpeg.client_data = &decoding;
     jpeg_mem_src(&decoding.jpeg, reinterpret_cast<const unsigned char*>(content.data()), content.size());
     jpeg_read_header(&decoding.jpeg, TRUE);
-    decoding.jpeg.out_color_space = decoding.jpeg.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    // YCCK becomes CMYK; what is left to do to get RGB is ours.
+    decoding.jpeg.out_color_space = decoding.jpeg.num_components == 1   ? JCS_GRAYSCALE
+                                    : decoding.jpeg.num_components == 4 ? JCS_CMYK
+                                                                        : JCS_RGB;
     jpeg_calc_output_dimensions(&decoding.jpeg);
     return true;
 }
@@ -66,18 +72,27 @@ bool read_pixels(Decoding& decoding) {
     return true;
 }
 
+// Red, green or blue of four inks, as fractions of the light that each lets through: files of Adobe's programs store these, others
+// the ink.
+float cmyk_value(const Decoding& decoding, std::size_t i) {
+    const JSAMPLE* inks = &decoding.pixels[i / 3 * 4];
+    const bool inverted = decoding.jpeg.saw_Adobe_marker != 0;
+    const auto passes = [inverted](JSAMPLE stored) { return static_cast<float>(inverted ? stored : 255 - stored) / 255.0F; };
+    return passes(inks[i % 3]) * passes(inks[3]);
+}
+
 }  // namespace
 
 Bitmap decode_jpeg(const std::string& path, const std::string& content, Transfer transfer) {
     Decoding decoding;
     const auto fail = [&] { refuse_image(path, std::string("damaged JPEG: ") + decoding.error.data()); };
     if (!read_header(decoding, content)) fail();
-    Bitmap image = make_image(path, decoding.jpeg.output_width, decoding.jpeg.output_height);
-    const std::size_t channels = decoding.jpeg.num_components == 1 ? 1 : 3;
+    Bitmap image = make_image(path, decoding.jpeg.output_width, decoding.jpeg.output_height, content.size(), most_pixels_a_byte);
+    const auto channels = static_cast<std::size_t>(decoding.jpeg.out_color_components);
     decoding.pixels.resize(image.rgb.size() / 3 * channels);
     if (!read_pixels(decoding)) fail();
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-        const float value = static_cast<float>(decoding.pixels[channels == 3 ? i : i / 3]) / 255.0F;
+        const float value = channels == 4 ? cmyk_value(decoding, i) : static_cast<float>(decoding.pixels[channels == 3 ? i : i / 3]) / 255.0F;
         if (transfer == Transfer::alpha) image.rgb[i] = 1.0F;
         else image.rgb[i] = transfer == Transfer::linear ? value : srgb_to_linear(value);
     }

@@ -12,6 +12,9 @@ namespace wavelobe {
 
 namespace {
 
+// Deflate at its best on pixels of one bit.
+constexpr double most_pixels_a_byte = 1032.0 * 8.0;
+
 // Everything a decoding needs lives here, so that a jump out of libpng skips no destructor.
 struct Decoding {
     const std::string& content;
@@ -84,7 +87,7 @@ Bitmap decode_png(const std::string& path, const std::string& content, Transfer 
     decoding.info = png_create_info_struct(decoding.png);
     const auto fail = [&] { refuse_image(path, std::string("damaged PNG: ") + decoding.error.data()); };
     if (!read_header(decoding)) fail();
-    Bitmap image = make_image(path, decoding.width, decoding.height);
+    Bitmap image = make_image(path, decoding.width, decoding.height, content.size(), most_pixels_a_byte);
     const std::size_t stride = png_get_rowbytes(decoding.png, decoding.info);
     decoding.pixels.resize(stride * decoding.height);
     for (png_uint_32 y = 0; y < decoding.height; ++y) decoding.rows.push_back(decoding.pixels.data() + y * stride);

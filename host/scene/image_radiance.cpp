@@ -11,6 +11,9 @@ namespace wavelobe {
 
 namespace {
 
+// Runs of the old kind are the shortest: four bytes for 255 pixels, later ones for 256 times as many.
+constexpr double most_pixels_a_byte = 65536.0 / 8.0;
+
 using Pixel = std::array<std::uint8_t, 4>;  // three mantissas and the exponent they share
 
 class RadianceReader {
@@ -19,22 +22,36 @@ public:
 
     Bitmap read() {
         Bitmap image = read_header();
-        const auto width = static_cast<std::size_t>(image.width);
-        // Every scanline takes at least a run for each 127 pixels of each channel.
-        std::vector<Pixel> row(width);
-        for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {
-            read_row(row);
-            for (std::size_t x = 0; x < width; ++x) {
-                const Pixel& pixel = row[x];
-                const float scale = pixel[3] == 0 ? 0.0F : std::ldexp(1.0F, pixel[3] - (128 + 8));
-                for (std::size_t k = 0; k < 3; ++k)
-                    image.rgb[(y * width + x) * 3 + k] = static_cast<float>(pixel[k]) * scale;
+        std::vector<Pixel> line(static_cast<std::size_t>(columns_first_ ? image.height : image.width));
+        const int lines = columns_first_ ? image.width : image.height;
+        for (int i = 0; i < lines; ++i) {
+            read_row(line);
+            for (int k = 0; k < static_cast<int>(line.size()); ++k) {
+                const int x = columns_first_ ? i : k, y = columns_first_ ? k : i;
+                store(image, right_to_left_ ? image.width - 1 - x : x, bottom_up_ ? image.height - 1 - y : y,
+                      line[static_cast<std::size_t>(k)]);
             }
         }
         return image;
     }
 
 private:
+    void store(Bitmap& image, int x, int y, const Pixel& pixel) const {
+        const float scale = pixel[3] == 0 ? 0.0F : std::ldexp(1.0F, pixel[3] - (128 + 8));
+        glm::vec3 colour = scale * glm::vec3(pixel[0], pixel[1], pixel[2]);
+        if (xyz_) colour = rec709_of_xyz(colour);
+        const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+        for (int k = 0; k < 3; ++k) image.rgb[at + static_cast<std::size_t>(k)] = colour[k];
+    }
+
+    // Rows of the inverse of the primaries' matrix, white at D65.
+    static glm::vec3 rec709_of_xyz(const glm::vec3& c) {
+        return glm::max(glm::vec3(3.240479F * c.x - 1.537150F * c.y - 0.498535F * c.z,
+                                  -0.969256F * c.x + 1.875991F * c.y + 0.041556F * c.z,
+                                  0.055648F * c.x - 0.204043F * c.y + 1.057311F * c.z),
+                        glm::vec3(0.0F));
+    }
+
     std::string next_line() {
         const std::size_t end = content_.find('\n', position_);
         if (end == std::string::npos) refuse_image(path_, "damaged Radiance HDR: the header does not end");
@@ -48,17 +65,20 @@ private:
         bool rgbe = false;
         for (std::string line = next_line(); !line.empty(); line = next_line()) {
             rgbe = rgbe || line.starts_with("FORMAT=32-bit_rle_rgbe");
-            if (line.starts_with("FORMAT=32-bit_rle_xyze"))
-                refuse_image(path_, "the image holds XYZ colours; expected the format 32-bit_rle_rgbe");
+            xyz_ = xyz_ || line.starts_with("FORMAT=32-bit_rle_xyze");
         }
-        if (!rgbe) refuse_image(path_, "the header does not name the format 32-bit_rle_rgbe");
+        if (!rgbe && !xyz_) refuse_image(path_, "the header names neither of the formats 32-bit_rle_rgbe and 32-bit_rle_xyze");
         std::istringstream resolution(next_line());
-        std::string y_axis, x_axis;
-        std::int64_t height = 0, width = 0;
-        resolution >> y_axis >> height >> x_axis >> width;
-        if (!resolution || y_axis != "-Y" || x_axis != "+X")
-            refuse_image(path_, "cannot read the resolution; expected `-Y <height> +X <width>`");
-        return make_image(path_, width, height);
+        std::string first, second;
+        std::int64_t lines = 0, length = 0;
+        resolution >> first >> lines >> second >> length;
+        const auto is_axis = [](const std::string& axis, char name) { return axis == std::string("+") + name || axis == std::string("-") + name; };
+        columns_first_ = is_axis(first, 'X') && is_axis(second, 'Y');
+        if (!resolution || !(columns_first_ || (is_axis(first, 'Y') && is_axis(second, 'X'))))
+            refuse_image(path_, "cannot read the resolution; expected two axes with their lengths, such as `-Y <height> +X <width>`");
+        bottom_up_ = first == "+Y" || second == "+Y";
+        right_to_left_ = first == "-X" || second == "-X";
+        return make_image(path_, columns_first_ ? lines : length, columns_first_ ? length : lines, content_.size(), most_pixels_a_byte);
     }
 
     std::uint8_t next() {
@@ -72,14 +92,31 @@ private:
         const std::string start = may_be_packed ? content_.substr(position_, 4) : "";
         if (!may_be_packed || start[0] != 2 || start[1] != 2 ||
             (static_cast<std::uint8_t>(start[2]) & 0x80U) != 0) {
-            for (Pixel& pixel : row)
-                for (std::uint8_t& byte : pixel) byte = next();
-            return;
+            return read_plain_row(row);
         }
         const std::size_t width = static_cast<std::uint8_t>(start[2]) * 256U + static_cast<std::uint8_t>(start[3]);
         if (width != row.size()) refuse_image(path_, "damaged Radiance HDR: a scanline has the wrong width");
         position_ += 4;
         for (std::size_t channel = 0; channel < 4; ++channel) read_channel(row, channel);
+    }
+
+    // Pixel by pixel; mantissas of 1, 1, 1 repeat the one before as often as the exponent says, several of them in a row with
+    // its digits in base 256, the lowest first.
+    void read_plain_row(std::vector<Pixel>& row) {
+        unsigned shift = 0;
+        for (std::size_t x = 0; x < row.size();) {
+            Pixel pixel;
+            for (std::uint8_t& byte : pixel) byte = next();
+            if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
+                row[x++] = last_ = pixel;
+                shift = 0;
+                continue;
+            }
+            const std::size_t count = shift < 32 ? std::size_t{pixel[3]} << shift : row.size() + 1;
+            if (count > row.size() - x) refuse_image(path_, "damaged Radiance HDR: a run is too long");
+            for (std::size_t k = 0; k < count; ++k) row[x++] = last_;
+            shift += 8;
+        }
     }
 
     // Runs of one value (length above 128) and of different ones.
@@ -101,6 +138,8 @@ private:
     const std::string& path_;
     const std::string& content_;
     std::size_t position_ = 0;
+    bool xyz_ = false, columns_first_ = false, bottom_up_ = false, right_to_left_ = false;
+    Pixel last_{};
 };
 
 }  // namespace

@@ -37,5 +37,7 @@ PreparedMesh prepare_mesh(MeshSource&& source, const MeshOptions& options);
 // Throw InputError naming the file, and the line where that is known.
 MeshSource load_obj(const std::string& path, bool flip_tex_coords);
 MeshSource load_ply(const std::string& path, bool flip_tex_coords);
+// Mesh `index` of a file of Mitsuba's own.
+MeshSource load_serialized(const std::string& path, std::uint32_t index);
 
 }  // namespace wavelobe

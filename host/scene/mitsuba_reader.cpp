@@ -52,6 +52,8 @@ void read_scene_object(Context& context, const Object& root) {
             context.faults.add(property.place, root.label(), "unknown property `" + property.name + "`",
                                "remove it");
     for (const Child& child : root.children)
+        if (child.object != nullptr && child.object->tag == "integrator" && sees_media(*child.object)) context.absorbs_media = true;
+    for (const Child& child : root.children)
         if (child.object != nullptr) read_top_level(context, *child.object);
     if (context.sensors == 0)
         context.faults.add(root.place, root.label(), "the scene has no sensor",
@@ -79,7 +81,7 @@ std::vector<SupportedPlugins> supported_plugins() {
             {"sampler", sampler_types()},       {"film", film_types()},
             {"rfilter", filter_types()},        {"bsdf", bsdf_types()},
             {"texture", texture_types()},   {"spectrum", spectrum_types()},
-                  {"shape", shape_types()},
+                  {"shape", shape_types()},           {"medium", medium_types()},
             {"emitter", emitter_types()}};
 }
 

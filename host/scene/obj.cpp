@@ -20,7 +20,10 @@ constexpr std::uint32_t none = 0xFFFFFFFFU;
 // A stream over text in memory that knows which line has just been read.
 class TextBuffer : public std::streambuf {
 public:
-    explicit TextBuffer(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
+    explicit TextBuffer(std::string& text) {
+        join_lines(text);
+        setg(text.data(), text.data(), text.data() + text.size());
+    }
 
     std::string_view line() const {
         const char* end = gptr();
@@ -32,8 +35,23 @@ public:
 
     int line_number() const {
         const char* begin = line().data();
-        return 1 + static_cast<int>(std::count(static_cast<const char*>(eback()), begin, '\n'));
+        const auto joined = std::lower_bound(joined_.begin(), joined_.end(), static_cast<std::size_t>(begin - eback()));
+        return 1 + static_cast<int>(std::count(static_cast<const char*>(eback()), begin, '\n') + (joined - joined_.begin()));
     }
+
+private:
+    // A backslash at the end of a line joins it with the next.
+    void join_lines(std::string& text) {
+        for (std::size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
+            std::size_t end = at + 1;
+            if (end < text.size() && text[end] == '\r') ++end;
+            if (end >= text.size() || text[end] != '\n') continue;
+            std::fill(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(end) + 1, ' ');
+            joined_.push_back(at);
+        }
+    }
+
+    std::vector<std::size_t> joined_;  // where, in order
 };
 
 // A vertex of the mesh: one combination of position, texture coordinates and normal.

@@ -51,7 +51,10 @@ public:
 
     // How many values of the property follow.
     std::size_t length(const Property& property) {
-        return property.list ? static_cast<std::size_t>(std::max(0.0, next(property.count_type))) : 1;
+        if (!property.list) return 1;
+        const double count = next(property.count_type);
+        if (!(count >= 0.0 && count <= static_cast<double>(end_ - at_))) fail("a list claims " + std::to_string(count) + " values");
+        return static_cast<std::size_t>(count);
     }
 
     // Each value takes its size in binary files, a digit and a blank in text.

@@ -12,6 +12,7 @@
 
 #include <glm/glm.hpp>
 
+#include "scene/media.h"
 #include "scene/picture.h"
 #include "scene/principled.h"
 #include "scene/texture.h"
@@ -208,6 +209,8 @@ struct Shape {
     std::variant<TriangleMesh, AnalyticShape> geometry;
     SurfaceMaterial material;
     std::optional<AreaEmitter> emitter;
+    // Empty: rays stay in the medium they are in. A shape that is nowhere (Opacity) still parts media.
+    std::optional<MediumBoundary> media{};
     bool flip_normals = false;  // analytic shapes only: a reader has already applied it to meshes
     std::string name;
 };
@@ -282,6 +285,8 @@ struct Scene {
     std::vector<ShapeGroup> groups;
     std::vector<Instance> instances;
     std::vector<Emitter> emitters;
+    std::vector<Medium> media;
+    int camera_medium = -1;  // that the camera is in; -1: vacuum
     Camera camera;
     Film film;
     Integrator integrator;

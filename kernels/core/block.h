@@ -26,9 +26,14 @@
 #define PATH_INSTANCE 14u
 #endif
 #if HAS_INSTANCES
-#define PATH_ORIGIN (PATH_INSTANCE + 1u) // 3
+#define PATH_MEDIUM (PATH_INSTANCE + 1u) // that the ray is in; in scenes with media
 #else
-#define PATH_ORIGIN PATH_INSTANCE
+#define PATH_MEDIUM PATH_INSTANCE
+#endif
+#if HAS_MEDIA
+#define PATH_ORIGIN (PATH_MEDIUM + 1u) // 3
+#else
+#define PATH_ORIGIN PATH_MEDIUM
 #endif
 #define PATH_FIELDS (PATH_ORIGIN + 3u)
 
@@ -45,6 +50,7 @@
 #define SHADOW_ID 7u
 #define SHADOW_FROM 8u        // primitive that the ray leaves
 #define SHADOW_ORIGIN 9u      // 3
+#define SHADOW_MEDIUM 12u     // that the ray starts in; in scenes with media
 
 #define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
 #define RAYS_OFFSET 0u
@@ -54,7 +60,7 @@
 #define GLOSSY_OFFSET (DELTA_OFFSET + HAS_DELTA_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
 #define DIFFUSE_OFFSET (GLOSSY_OFFSET + HAS_GLOSSY_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
 #define SHADOW_OFFSET (DIFFUSE_OFFSET + HAS_DIFFUSE_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
-#define RADIANCE_OFFSET (SHADOW_OFFSET + SHADOW_FIELDS * QUEUE_STRIDE)
+#define RADIANCE_OFFSET (SHADOW_OFFSET + (SHADOW_FIELDS + HAS_MEDIA) * QUEUE_STRIDE)
 #define RADIANCE_STRIDE (TILE_PIXELS * BLOCK_SAMPLES)
 #define BLOCK_WORDS (RADIANCE_OFFSET + 3u * RADIANCE_STRIDE)
 
@@ -88,6 +94,12 @@ INLINE Vec3 read_vec3(Queue q, uint field, uint i) {
 }
 
 INLINE void write_field(Queue q, uint field, uint i, Float v) { store(q.fields + (size_t)field * QUEUE_STRIDE + i, v); }
+
+INLINE void write_vec3(Queue q, uint field, uint i, Vec3 v) {
+    write_field(q, field, i, v.x);
+    write_field(q, field + 1u, i, v.y);
+    write_field(q, field + 2u, i, v.z);
+}
 
 // One slot, for stages that go ray by ray.
 INLINE float slot_float(Queue q, uint field, uint i) { return q.fields[(size_t)field * QUEUE_STRIDE + i]; }

@@ -31,6 +31,8 @@ WAVELOBE_CHECK_SIZE(Shape, 40);
 #define SHAPE_EMITS_BEHIND 128u  // on both sides; the back is never sampled
 #define SHAPE_SIDED_BY_WINDING 512u // sides of unlike materials are told by the geometric normal
 #define SHAPE_EMITS_COLORED 256u // scaled by the colours of its vertices
+#define SHAPE_PARTS_MEDIA 1024u     // says which media are on its two sides
+#define SHAPE_CLEAR 2048u           // parts media and is not there otherwise: rays go on behind it
 
 // Camera, film window, and the integrator's limits.
 struct RenderParameters {
@@ -49,8 +51,9 @@ struct RenderParameters {
     struct FewSummary few; // of scenes without a hierarchy
     Uint32 layer_first_instance; // number of the first instance among the shapes that layers name
     float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
+    Uint32 camera_medium; // that the camera is in
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 156);
+WAVELOBE_CHECK_SIZE(RenderParameters, 160);
 
 // Squares of red, green and blue, and of X, Y and Z, that a pixel holds where they are asked for.
 #define MOMENT_CHANNELS 6u

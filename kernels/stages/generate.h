@@ -27,6 +27,9 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
         append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
         append_uint(rays, PATH_ID, count, id, bits);
         append_uint(rays, PATH_DEPTH, count, (UInt)0u, bits);
+#if HAS_MEDIA
+        append_uint(rays, PATH_MEDIUM, count, (UInt)p->camera_medium, bits);
+#endif
 #if HAS_TRANSMISSION
         append_field(rays, PATH_ETA, count, ONE, bits);
 #endif

@@ -3,8 +3,31 @@
 #define WAVELOBE_STAGES_INTERSECT_CLOSEST_H
 
 #include "stages/scene_view.h"
+#if HAS_MEDIA
+#include "stages/absorb.h"
+#endif
 
-#if HAS_FEW_TRIANGLES
+#if HAS_CLEAR_BOUNDARIES
+// Through what only parts media, taking off what the media absorb.
+INLINE void follow_paths(Block block, const SceneView *scene, Queue rays) {
+    uint n = *rays.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        TracedPath path = untraced_path(rays, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
+        UInt medium = read_uint(rays, PATH_MEDIUM, i);
+        Rgb left = follow_rays(block, scene, read_vec3(rays, PATH_ORIGIN, i), &path, &medium, 1);
+        Rgb throughput = mul(read_vec3(rays, PATH_THROUGHPUT, i), left);
+        write_field(rays, PATH_T, i, path.t);
+        write_field(rays, PATH_U, i, path.u);
+        write_field(rays, PATH_V, i, path.v);
+        write_field(rays, PATH_HIT, i, as_Float(path.hit));
+        write_field(rays, PATH_MEDIUM, i, as_Float(medium));
+        write_vec3(rays, PATH_THROUGHPUT, i, throughput);
+#if HAS_INSTANCES
+        write_field(rays, PATH_INSTANCE, i, as_Float(path.instance));
+#endif
+    }
+}
+#elif HAS_FEW_TRIANGLES
 // LANES rays at a time against everything.
 INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
@@ -54,7 +77,19 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
 
 INLINE uint run_intersect_closest(Block block, const SceneView *scene) {
     Queue rays = QUEUE(block, RAYS);
+#if HAS_CLEAR_BOUNDARIES
+    follow_paths(block, scene, rays);
+#else
     intersect_rays(scene->geometry, block, rays);
+#if HAS_MEDIA
+    uint n = *rays.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        // What escapes has no end.
+        Float escaped = SELECT(read_uint(rays, PATH_HIT, i) == (UInt)HIT_NONE, (Float)INFINITY, read_field(rays, PATH_T, i));
+        absorb_along(scene->media, rays, PATH_THROUGHPUT, PATH_MEDIUM, lanes_below(i, n), escaped, i);
+    }
+#endif
+#endif
     return *rays.count;
 }
 

@@ -3,8 +3,23 @@
 #define WAVELOBE_STAGES_INTERSECT_SHADOW_H
 
 #include "stages/scene_view.h"
+#if HAS_MEDIA
+#include "stages/absorb.h"
+#endif
 
-#if HAS_FEW_TRIANGLES
+#if HAS_CLEAR_BOUNDARIES
+// Through what only parts media, taking off what the media absorb.
+INLINE void follow_shadow_rays(Block block, const SceneView *scene, Queue shadow) {
+    uint n = *shadow.count;
+    for (uint i = 0u; i < n; i += LANES) {
+        TracedPath path = untraced_path(shadow, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
+        UInt medium = read_uint(shadow, SHADOW_MEDIUM, i);
+        Rgb left = follow_rays(block, scene, read_vec3(shadow, SHADOW_ORIGIN, i), &path, &medium, 0);
+        Int seen = path.live & (path.hit == (UInt)HIT_NONE);
+        add_radiance(block, path.id, mul(read_vec3(shadow, SHADOW_CONTRIBUTION, i), left), lane_bits(seen));
+    }
+}
+#elif HAS_FEW_TRIANGLES
 // LANES rays at a time against everything. A path has one shadow ray at the most, so no two lanes share an id.
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
@@ -46,7 +61,16 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 INLINE uint run_intersect_shadow(Block block, const SceneView *scene) {
     Queue shadow = QUEUE(block, SHADOW);
     uint n = *shadow.count;
+#if HAS_CLEAR_BOUNDARIES
+    follow_shadow_rays(block, scene, shadow);
+#else
+#if HAS_MEDIA
+    for (uint i = 0u; i < n; i += LANES) {
+        absorb_along(scene->media, shadow, SHADOW_CONTRIBUTION, SHADOW_MEDIUM, lanes_below(i, n), read_field(shadow, SHADOW_T, i), i);
+    }
+#endif
     intersect_shadow_rays(scene->geometry, block, shadow);
+#endif
     *shadow.count = 0u;
     return n;
 }

@@ -22,6 +22,10 @@ INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
         Float eta = PATH_ETA_OF(path) * s.eta;
         Int alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput,
                              path.live & (max_component(throughput) > 0.0f));
+#if HAS_MEDIA
+        UInt medium = medium_beyond(scene->media, scene->surfaces, &surface, direction, path.medium);
+        append_uint(rays, PATH_MEDIUM, appended, medium, lane_bits(alive));
+#endif
         appended = append_rays(rays, appended, &path, &surface, direction, throughput, (Float)-1.0f, eta, alive);
     }
     *rays.count = appended;

@@ -13,8 +13,9 @@
 #define SHADOW_REACH (1.0f - 2.0f * GAMMA(16))
 
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
-INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId sample, const TracedPath *path,
+INLINE uint sample_direct_light(Queue shadow, uint at, const SceneView *scene, SampleId sample, const TracedPath *path,
                                 const Surface *surface, const SmoothLobes *lobes, UInt receiver) {
+    LightInput in = scene->lights;
     Float u_light = ZERO, u1, u2;
 #if LIGHT_COUNT > 1
     Float u_deep; // for trees
@@ -51,6 +52,10 @@ INLINE uint sample_direct_light(Queue shadow, uint at, LightInput in, SampleId s
     append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
     append_uint(shadow, SHADOW_ID, at, path->id, bits);
     append_uint(shadow, SHADOW_FROM, at, surface->primitive, bits);
+#if HAS_MEDIA
+    UInt medium = medium_beyond(scene->media, scene->surfaces, surface, light.direction, path->medium);
+    append_uint(shadow, SHADOW_MEDIUM, at, medium, bits);
+#endif
     return at + popcount(bits);
 }
 #endif
@@ -95,7 +100,7 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
 #if HAS_LIGHTS
         UInt receiver = surface_receiver(scene->surfaces, &surface);
-        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene->lights, sample, &path, &surface, &lobes, receiver);
+        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene, sample, &path, &surface, &lobes, receiver);
 #endif
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
@@ -108,6 +113,10 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
 #if HAS_LIGHT_TREE
         append_uint(rays, PATH_RECEIVER, appended, receiver, lane_bits(alive));
+#endif
+#if HAS_MEDIA
+        UInt medium = medium_beyond(scene->media, scene->surfaces, &surface, direction, path.medium);
+        append_uint(rays, PATH_MEDIUM, appended, medium, lane_bits(alive));
 #endif
         appended = append_rays(rays, appended, &path, &surface, direction, throughput, value.pdf, eta, alive);
     }

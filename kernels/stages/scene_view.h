@@ -11,6 +11,9 @@
 #if HAS_LIGHTS
 #include "lights/choose.h"
 #endif
+#if HAS_MEDIA
+#include "shapes/media.h"
+#endif
 
 typedef struct {
     global const struct RenderParameters *parameters;
@@ -20,6 +23,9 @@ typedef struct {
     global const float *texels;
 #if HAS_LIGHTS
     LightInput lights;
+#endif
+#if HAS_MEDIA
+    MediaView media;
 #endif
     global const float *filter_table;
     global struct FilmPixel *film;
@@ -54,11 +60,19 @@ typedef struct {
 #define SCENE_LIGHT_PARAMETERS
 #define SCENE_LIGHT_VIEW
 #endif
+#if HAS_MEDIA
+#define MEDIA_PARAMETERS , global const struct Medium *media, global const struct ShapeMedia *shape_media
+#define MEDIA_VIEW {media, shape_media},
+#else
+#define MEDIA_PARAMETERS
+#define MEDIA_VIEW
+#endif
 
 #define SCENE_PARAMETERS                                                                          \
-    SURFACE_PARAMETERS TEXTURE_PARAMETERS SCENE_LIGHT_PARAMETERS, GEOMETRY_PARAMETERS,            \
+    SURFACE_PARAMETERS TEXTURE_PARAMETERS SCENE_LIGHT_PARAMETERS MEDIA_PARAMETERS, GEOMETRY_PARAMETERS, \
         global const float *filter_table, global struct FilmPixel *film LAYER_PARAMETERS MOMENT_PARAMETER
-#define SCENE_VIEW \
-    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW filter_table, film LAYER_ARGUMENTS MOMENT_ARGUMENT}
+#define SCENE_VIEW                                                                                \
+    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW MEDIA_VIEW filter_table, film LAYER_ARGUMENTS \
+     MOMENT_ARGUMENT}
 
 #endif

@@ -64,10 +64,18 @@ INLINE Int passes_veil(OpacityView o, Block block, SurfaceView view, Queue rays,
 #define PASSES_BEHIND (HIDE_EMITTERS && HAS_SURFACE_LIGHTS)
 #endif
 
+#if HAS_MEDIA
+#define MEDIA_VIEW_PARAMETER , MediaView media
+#define MEDIA_VIEW_ARGUMENT(scene) , (scene)->media
+#else
+#define MEDIA_VIEW_PARAMETER
+#define MEDIA_VIEW_ARGUMENT(scene)
+#endif
+
 #if PASSES_BEHIND
 // Paths that pass a light are traced on from behind it. No light sample sees through it: the next light they find is all
 // theirs.
-INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int passing) {
+INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int passing MEDIA_VIEW_PARAMETER) {
     uint bits = lane_bits(passing);
     TracedPath path = read_traced_path(rays, i);
     path.hit = SELECT(passing, path.hit, (UInt)0u);
@@ -79,6 +87,9 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int pass
     append_field(rays, PATH_T, first, (Float)INFINITY, bits);
     append_uint(rays, PATH_HIT, first, surface.primitive, bits);
     append_field(rays, PATH_PDF, first, (Float)-1.0f, bits);
+#if HAS_MEDIA
+    append_uint(rays, PATH_MEDIUM, first, medium_beyond(media, view, &surface, path.direction, path.medium), bits);
+#endif
     return at;
 }
 #endif
@@ -146,7 +157,7 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
 #endif
 #if PASSES_BEHIND
         // Last, because it writes over slots of this group and earlier ones.
-        if (any_lane(passing)) passed = pass_through(rays, passed, i, scene->surfaces, passing);
+        if (any_lane(passing)) passed = pass_through(rays, passed, i, scene->surfaces, passing MEDIA_VIEW_ARGUMENT(scene));
 #endif
     }
     block.header->traced = n;

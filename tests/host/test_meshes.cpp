@@ -313,5 +313,25 @@ TEST(Meshes, DamagedObjFilesAreRefusedByLine) {
     }
 }
 
+TEST(Meshes, ObjLinesGoOnBehindABackslash) {
+    const SceneFolder folder;
+    const std::string start = "v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\r\nv 0 1 0\nf 1 2 \\\r\n 3 \\\n 4\n";
+    EXPECT_EQ(load_obj(folder.write("m.obj", start), true).triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}}));
+    try {
+        load_obj(folder.write("bad.obj", start + "f 1 2 9"), true);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.faults().at(0).line, 9);
+    }
+}
+
+TEST(Meshes, PlyListsOfAbsurdLengthAreRefused) {
+    const SceneFolder folder;
+    const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                             "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0\n";
+    for (const char* count : {"1e300", "-1", "nan", "4000000000"})
+        EXPECT_THROW(load_ply(folder.write("m.ply", head + count + " 0 0 0\n"), false), InputError) << count;
+}
+
 }  // namespace
 }  // namespace wavelobe::test

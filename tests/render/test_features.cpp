@@ -54,7 +54,7 @@ TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
         EXPECT_FALSE(contains(text, absent)) << absent;
     }
     for (const char* feature : {"TEXTURES", "TEXTURED_EMITTERS", "SMOOTH_NORMALS", "UVS", "ANALYTIC", "ANISOTROPY",
-                                "TANGENTS", "NESTING", "TRANSMISSION", "LOBE_CHOICE", "MIXTURE", "ENVIRONMENT"}) {
+                                "TANGENTS", "NESTING", "TRANSMISSION", "LOBE_CHOICE", "MIXTURE", "ENVIRONMENT", "MEDIA", "CLEAR_BOUNDARIES"}) {
         EXPECT_TRUE(contains(text, std::string("#define HAS_") + feature + " 0\n")) << feature;
     }
 }

@@ -36,9 +36,11 @@ struct Context {
     std::map<std::string, std::shared_ptr<const Texture>> bitmaps;  // by file and options
     std::map<const Material*, int> material_indices;
     std::map<const Object*, int> groups;
+    std::map<const Object*, int> media;
     std::shared_ptr<const Material> default_material, black_material;
 
     int bsdf_levels = 0;  // of nested ones that are being read
+    bool absorbs_media = false;  // the integrator sees media
     int environments = 0;
     int sensors = 0;
     int integrators = 0;
@@ -75,6 +77,17 @@ void read_shape(Context& context, const Object& object);
 std::optional<Shape> build_shape(Context& context, const Object& object);
 std::vector<std::string> shape_types();
 
+// ---- media.cpp --------------------------------------------------------------------------------------
+
+class Query;
+// Index into Scene::media; -1 where it is refused or without effect.
+int read_medium(Context& context, const Object& object);
+// The media that a shape parts.
+std::optional<MediumBoundary> read_boundary(Query& query);
+// The medium that a sensor or light is in; -1: none.
+int read_surrounding_medium(Query& query);
+std::vector<std::string> medium_types();
+
 // ---- instances.cpp ----------------------------------------------------------------------------------
 
 // The index of the group, which is read once; -1 where it is refused.
@@ -102,6 +115,8 @@ std::vector<std::string> filter_types();
 // ---- integrator.cpp ---------------------------------------------------------------------------------
 
 void read_integrator(Context& context, const Object& object);
+// Whether that integrator, or one that it holds, sees media.
+bool sees_media(const Object& integrator);
 std::vector<std::string> integrator_types();
 
 }  // namespace wavelobe::mitsuba

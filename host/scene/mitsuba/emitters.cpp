@@ -148,6 +148,7 @@ void read_emitter(Context& context, const Object& object) {
         return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
     std::optional<Emitter> emitter = plugin->read(query);
     accept_sampling_weight(query);
+    read_surrounding_medium(query);  // paths start at the camera
     query.finish();
     if (emitter) context.scene.emitters.push_back(std::move(*emitter));
 }
@@ -166,6 +167,7 @@ std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& obj
     }
     AreaEmitter emitter{query.parameter("radiance", 1.0, ColourUse::emission)};
     accept_sampling_weight(query);
+    read_surrounding_medium(query);
     query.finish();
     return emitter;
 }

@@ -1,4 +1,5 @@
 // The integrator plugins.
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <set>
@@ -159,7 +160,7 @@ struct Plugin {
     Integrator (*read)(Query&);
     bool holds_another;
 };
-// Without media, and those are refused where they stand, `volpath` computes what `path` does.
+// Without media `volpath` computes what `path` does.
 constexpr std::array<Plugin, 6> plugins{{
     {"aov", read_aov, true},
     {"direct", read_direct, false},
@@ -189,6 +190,11 @@ void read_integrator(Context& context, const Object& object) {
     const Integrator integrator = read_integrator_object(context, object);
     refuse_equal_names(query, integrator);
     context.scene.integrator = integrator;
+}
+
+bool sees_media(const Object& integrator) {
+    return integrator.type.starts_with("volpath") ||
+           std::ranges::any_of(integrator.children, [](const Child& c) { return c.object != nullptr && sees_media(*c.object); });
 }
 
 std::vector<std::string> integrator_types() { return names_of(plugins); }

@@ -120,9 +120,11 @@ void read_sensor(Context& context, const Object& object) {
     const Film film = film_object != nullptr ? read_film(context, *film_object) : Film{};
     const Sampling sampling = sampler_object != nullptr ? read_sampler(context, *sampler_object) : Sampling{};
     const Camera camera = plugin->read(query, film);
+    const int medium = read_surrounding_medium(query);
     query.finish();
     if (++context.sensors > 1) return query.warn("ignored: the first sensor of the scene is the one that is used");
     context.scene.camera = camera;
+    context.scene.camera_medium = medium;
     context.scene.film = film;
     context.scene.sample_count = sampling.sample_count;
     context.scene.seed = sampling.seed;

@@ -1,6 +1,8 @@
 // The shape plugins.
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -71,14 +73,12 @@ bool read_cube(Query& query, Shape& shape) {
     return true;
 }
 
-bool read_mesh_file(Query& query, Shape& shape, MeshSource (*load)(const std::string&, bool),
-                    bool flip_by_default) {
+bool read_mesh_file(Query& query, Shape& shape, const std::function<MeshSource(const std::string&)>& load) {
     const std::string path = query.file("filename");
     const MeshOptions options = mesh_options(query);
-    const bool flip = query.boolean("flip_tex_coords", flip_by_default);
     if (path.empty()) return false;
     try {
-        PreparedMesh prepared = prepare_mesh(load(path, flip), options);
+        PreparedMesh prepared = prepare_mesh(load(path), options);
         if (prepared.dropped > 0)
             query.warn(fmt::format("left out {} triangles of {} without area or with positions that are not finite",
                                    prepared.dropped, path));
@@ -94,8 +94,20 @@ bool read_mesh_file(Query& query, Shape& shape, MeshSource (*load)(const std::st
     }
 }
 
-bool read_obj(Query& query, Shape& shape) { return read_mesh_file(query, shape, load_obj, true); }
-bool read_ply(Query& query, Shape& shape) { return read_mesh_file(query, shape, load_ply, false); }
+bool read_obj(Query& query, Shape& shape) {
+    const bool flip = query.boolean("flip_tex_coords", true);
+    return read_mesh_file(query, shape, [flip](const std::string& path) { return load_obj(path, flip); });
+}
+
+bool read_ply(Query& query, Shape& shape) {
+    const bool flip = query.boolean("flip_tex_coords", false);
+    return read_mesh_file(query, shape, [flip](const std::string& path) { return load_ply(path, flip); });
+}
+
+bool read_serialized(Query& query, Shape& shape) {
+    const auto index = static_cast<std::uint32_t>(query.integer("shape_index", 0, 0, std::numeric_limits<std::int32_t>::max()));
+    return read_mesh_file(query, shape, [index](const std::string& path) { return load_serialized(path, index); });
+}
 
 bool read_sphere(Query& query, Shape& shape) {
     const glm::dmat4 to_world = query.transform("to_world");
@@ -149,7 +161,7 @@ struct Plugin {
     // Fills in the geometry; false for a shape that does not enter the scene.
     bool (*read)(Query&, Shape&);
 };
-constexpr std::array<Plugin, 9> plugins{{
+constexpr std::array<Plugin, 10> plugins{{
     {"cube", read_cube},
     {"cylinder", read_cylinder},
     {"disk", read_disk},
@@ -157,6 +169,7 @@ constexpr std::array<Plugin, 9> plugins{{
     {"obj", read_obj},
     {"ply", read_ply},
     {"rectangle", read_rectangle},
+    {"serialized", read_serialized},
     {"shapegroup", nullptr},
     {"sphere", read_sphere},
 }};
@@ -190,9 +203,9 @@ std::optional<Shape> build_shape(Context& context, const Object& object) {
     if (emitter != nullptr) shape.emitter = read_area_emitter(context, *emitter);
     const Bsdf bsdf =
         bsdf_object != nullptr ? read_bsdf(context, *bsdf_object) : default_bsdf(context, emitter != nullptr);
-    for (const Child* medium : query.children("medium"))
-        context.faults.add(medium->place, object.label(), "participating media are not supported",
-                           "remove the medium");
+    shape.media = read_boundary(query);
+    if (shape.media && (bsdf.opacity.value.texture || (bsdf.opacity.value.value.r > 0.0F && bsdf.opacity.value.value.r < 1.0F)))
+        query.fault("a mask cannot bound a medium", "use a BSDF that is all there, or `null`");
     query.accept({"silhouette_sampling_weight"});
     query.finish();
     if (!usable || bsdf.front == nullptr) return {};

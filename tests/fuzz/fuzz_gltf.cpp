@@ -1,0 +1,10 @@
+// Text and binary files, told apart by content.
+#include "fuzz_file.h"
+#include "scene/gltf_reader.h"
+
+using namespace wavelobe;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string path = fuzz::write_file(fuzz::content_of(data, size), ".gltf");
+    return fuzz::refuse_or_read([&] { read_gltf_scene(path, {}); });
+}
