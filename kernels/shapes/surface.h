@@ -7,6 +7,7 @@
 #include "shared/bvh.h"
 #include "shared/scene.h"
 #include "shared/materials.h"
+#include "shapes/traced_path.h"
 #include "shapes/triangle_uvs.h"
 #if HAS_TANGENTS
 #include "shapes/triangle_tangents.h"
@@ -88,28 +89,6 @@ typedef struct {
     {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT            \
          ANALYTIC_ARGUMENT INSTANCES_ARGUMENT}
 
-// A traced path as its queue holds it.
-typedef struct {
-    Float t, u, v;
-    UInt hit, id, depth;
-    Vec3 direction;
-    Rgb throughput;
-    Float pdf;
-#if HAS_ANALYTIC
-    Vec3 origin;
-#endif
-#if HAS_TRANSMISSION
-    Float eta;
-#endif
-#if HAS_INSTANCES
-    UInt instance;
-#endif
-#if HAS_LIGHT_TREE
-    UInt receiver;
-#endif
-    Int live; // lanes that hold a path
-} TracedPath;
-
 #if HAS_NORMAL_MAPS
 // A normal or bump map at one level of a nested material: the normal before and after it, turned to the side that is seen.
 typedef struct {
@@ -142,34 +121,6 @@ typedef struct {
     MappedNormal maps[MATERIAL_LEVELS]; // that the material's frame has gone through
 #endif
 } Surface;
-
-// Slots of a group beyond the queue's end are read as hits of triangle 0 with no weight.
-INLINE TracedPath read_traced_path(Queue q, uint i) {
-    TracedPath p;
-    p.live = lanes_below(i, *q.count);
-    p.t = read_field(q, PATH_T, i);
-    p.hit = SELECT(p.live, read_uint(q, PATH_HIT, i), (UInt)0u);
-    p.u = read_field(q, PATH_U, i);
-    p.v = read_field(q, PATH_V, i);
-    p.direction = read_vec3(q, PATH_DIRECTION, i);
-    p.throughput = read_vec3(q, PATH_THROUGHPUT, i);
-    p.pdf = read_field(q, PATH_PDF, i);
-    p.id = SELECT(p.live, read_uint(q, PATH_ID, i), (UInt)0u);
-    p.depth = read_uint(q, PATH_DEPTH, i);
-#if HAS_ANALYTIC
-    p.origin = read_vec3(q, PATH_ORIGIN, i);
-#endif
-#if HAS_TRANSMISSION
-    p.eta = read_field(q, PATH_ETA, i);
-#endif
-#if HAS_INSTANCES
-    p.instance = SELECT(p.live, read_uint(q, PATH_INSTANCE, i), (UInt)INSTANCE_NONE);
-#endif
-#if HAS_LIGHT_TREE
-    p.receiver = read_uint(q, PATH_RECEIVER, i);
-#endif
-    return p;
-}
 
 INLINE UInt block_word(UInt slot) { return (slot >> 3) * RECORD_WORDS(TriangleBlock) + (slot & (UInt)7u); }
 
