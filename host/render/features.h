@@ -52,6 +52,8 @@ struct FeatureSet {
     bool error_estimate = false; // the film is kept in two independent halves
     bool masks = false;            // rays pass some primitives, by their opacity
     bool veiled_emitters = false;  // paths go on behind some emitters
+    Estimator estimator = Estimator::mis;
+    bool independent_samples = false;
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
