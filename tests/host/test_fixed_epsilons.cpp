@@ -29,7 +29,8 @@ const std::vector<Known> known_constants{
     {"lights/light_tree.h", "#define HORIZON_SLACK 0x1p-13f", "rounding of coded normals: lights are sampled rather too often"},
     {"lights/light_tree.h", "probability < 0x1p-12f", "where the digits of a random number run out"},
     {"lights/envmap.h", "#define LEAST_POLE_SINE 0x1p-36f", "keeps a density finite"},
-    {"shapes/traversal.h", "least = 0x1p-60f", "direction component that divides; relative to a unit direction"},
+    {"shapes/box_test.h", "least = 0x1p-60f", "component of a unit direction that divides"},
+    {"shapes/packet.h", "least = (Float)0x1p-60f", "the same of packets"},
 };
 
 // Coefficients of polynomials.
