@@ -297,7 +297,9 @@ std::uint32_t append_bvh(Bvh& all, const Bvh& group, std::uint32_t first_triangl
         all.nodes.push_back(node);
     }
     for (TriangleBlock block : group.blocks) {
-        for (std::uint32_t& primitive : block.primitive) primitive += first_triangle;
+        for (std::uint32_t& primitive : block.primitive) {
+            if (primitive != HIT_NONE) primitive += first_triangle;
+        }
         all.blocks.push_back(block);
     }
     for (const std::uint32_t entry : group.analytic_order) all.analytic_order.push_back(entry + first_analytic);

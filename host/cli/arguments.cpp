@@ -94,8 +94,12 @@ void print_notes(const Scene& scene) {
     for (const std::string& note : scene.notes) std::printf("%s\n", note.c_str());
 }
 
-std::optional<PixelWindow> parse_window(const std::string& text) {
-    std::array<int, 4> values{};
+namespace {
+
+// N whole numbers with commas between them.
+template <std::size_t N>
+std::optional<std::array<int, N>> parse_numbers(const std::string& text) {
+    std::array<int, N> values{};
     std::string_view rest = text;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const bool last = i + 1 == values.size();
@@ -106,7 +110,21 @@ std::optional<PixelWindow> parse_window(const std::string& text) {
         values[i] = *value;
         if (!last) rest.remove_prefix(end + 1);
     }
-    return PixelWindow{values[0], values[1], values[2], values[3]};
+    return values;
+}
+
+}  // namespace
+
+std::optional<PixelWindow> parse_window(const std::string& text) {
+    const auto values = parse_numbers<4>(text);
+    if (!values) return {};
+    return PixelWindow{(*values)[0], (*values)[1], (*values)[2], (*values)[3]};
+}
+
+std::optional<SampleName> parse_sample_name(const std::string& text) {
+    const auto values = parse_numbers<3>(text);
+    if (!values || (*values)[2] < 0) return {};
+    return SampleName{(*values)[0], (*values)[1], static_cast<std::uint32_t>((*values)[2])};
 }
 
 void set_crop_window(Film& film, const PixelWindow& window) {

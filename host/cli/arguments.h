@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include "render/render.h"
 #include "scene/gltf_reader.h"
 #include "scene/mitsuba_reader.h"
 
@@ -43,6 +44,9 @@ struct PixelWindow {
 
 // Reads `X0,Y0,X1,Y1`; nothing for any other text.
 std::optional<PixelWindow> parse_window(const std::string& text);
+
+// Reads `X,Y,S`; nothing for any other text.
+std::optional<SampleName> parse_sample_name(const std::string& text);
 
 // Throws InputError naming the film's size when the window is empty or not inside it.
 void set_crop_window(Film& film, const PixelWindow& window);

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/exit_code.h"
@@ -29,7 +31,8 @@ struct RenderOptions {
     std::string stats_path;  // empty: none
     std::optional<int> samples_per_pixel;
     std::optional<int> max_depth;
-    std::string crop;  // empty: the scene's
+    std::string crop;    // empty: the scene's
+    std::string replay;  // empty: a picture is made
     std::optional<std::uint32_t> seed;
     int threads = 0;
     Driver driver = Driver::one_kernel;
@@ -61,7 +64,7 @@ void check_outputs(const RenderOptions& options) {
     std::vector<Fault> faults;
     std::vector<std::filesystem::path> seen;
     for (const std::string* path : {&options.exr_path, &options.png_path, &options.stats_path}) {
-        if (path->empty() && path != &options.exr_path) continue;
+        if (path->empty()) continue;
         try {
             refuse_unwritable(*path);
         } catch (const InputError& error) {
@@ -102,6 +105,26 @@ int nothing_rendered() {
     return exit_interrupted;
 }
 
+// Shows one path in place of making a picture.
+int show_path(const RenderOptions& options, const Device& device, const Scene& scene, RenderSettings settings) {
+    settings.driver = Driver::replay;
+    settings.replayed = *parse_sample_name(options.replay);
+    const Film& film = scene.film;
+    const int column = settings.replayed.x - film.crop_x;
+    const int row = settings.replayed.y - film.crop_y;
+    if (column < 0 || row < 0 || column >= film.crop_width || row >= film.crop_height) {
+        throw InputError(Fault{.file = "--replay " + options.replay,
+                               .element = {},
+                               .message = "the pixel is not one of the picture's",
+                               .hint = fmt::format("columns are {} to {}, rows {} to {}", film.crop_x, film.crop_x + film.crop_width - 1,
+                                                   film.crop_y, film.crop_y + film.crop_height - 1)});
+    }
+    Renderer renderer(device, scene, settings);
+    renderer.render();
+    std::printf("%s", replay_text(renderer.stats().replay).c_str());
+    return exit_ok;
+}
+
 int run(const RenderOptions& options) {
     Stopwatch watch;
     check_outputs(options);
@@ -122,6 +145,7 @@ int run(const RenderOptions& options) {
     settings.driver = options.driver;
     settings.target_error = options.target_error;
     settings.time_limit = options.time_limit;
+    if (!options.replay.empty()) return show_path(options, device, scene, settings);
     Renderer renderer(device, scene, settings);
     if (interrupted()) return nothing_rendered();
 
@@ -168,7 +192,7 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
     const auto add = [command](const char* name, auto& value, const char* type, const char* help) {
         return command->add_option(name, value, help)->type_name(type)->take_last();
     };
-    add("-o,--output", options->exr_path, "OUT.exr", "Picture to write: linear RGB, OpenEXR")->required();
+    add("-o,--output", options->exr_path, "OUT.exr", "Picture to write: linear RGB, OpenEXR");
     add("--png", options->png_path, "OUT.png", "Also write it as 8-bit sRGB, clamped");
     add("--spp", options->samples_per_pixel, "N", "Samples a pixel (default: the scene's)")->check(whole_number(1, 1 << 24));
     add("--target-error", options->target_error, "E",
@@ -186,13 +210,21 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
     };
     add("--crop", options->crop, "X0,Y0,X1,Y1", "Render this window only, its right and lower edge excluded")
         ->check(CLI::Validator(is_window, ""));
+    const auto is_sample = [](const std::string& text) -> std::string {
+        return parse_sample_name(text) ? "" : "\"" + text + "\" is not of the form X,Y,S";
+    };
+    add("--replay", options->replay, "X,Y,S", "Write no picture: show the path of sample S of pixel (X, Y), a line a vertex")
+        ->check(CLI::Validator(is_sample, ""));
     add("--stats", options->stats_path, "FILE.json", "Write timings and counts as JSON");
     add("--device", options->device, "TEXT", "Part of the name of the OpenCL device or platform");
     add("--driver", options->driver, "NAME", "How stages are run: one-kernel, or staged (a launch each; slower)")
         ->transform(CLI::CheckedTransformer(driver_names, CLI::ignore_case));
     command->add_flag("-q,--quiet", options->quiet, "Print nothing but the warnings of a faulty picture, and errors");
     command->add_flag("-v,--verbose", options->verbose, "Print timings and counts as a table");
-    command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+    command->callback([options, &chosen] {
+        if (options->exr_path.empty() && options->replay.empty()) throw CLI::RequiredError("--output");
+        chosen = [options] { return run(*options); };
+    });
 }
 
 }  // namespace wavelobe

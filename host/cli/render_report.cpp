@@ -61,8 +61,8 @@ std::string report_json(const RenderReport& report) {
     if (stats.estimated_error) json["estimated_relmse"] = *stats.estimated_error;
     json["nan_samples"] = stats.nan_samples;
     json["nan_examples"] = Json::array();
-    for (const NonFiniteSample& sample : stats.nan_examples) {
-        json["nan_examples"].push_back({{"x", sample.x}, {"y", sample.y}, {"sample", sample.sample}});
+    for (const auto& [name, stage] : stats.nan_examples) {
+        json["nan_examples"].push_back({{"x", name.x}, {"y", name.y}, {"sample", name.sample}, {"stage", stage}});
     }
     json["setup"] = stats.setup_parts;
     json["rays"] = stats.rays;
@@ -83,10 +83,31 @@ std::string non_finite_warning(const RenderStats& stats) {
     if (stats.nan_samples == 0) return {};
     std::string text = fmt::format("{} samples were NaN or infinite and are left out of the picture", stats.nan_samples);
     const char* separator = "; the first: ";
-    for (const NonFiniteSample& sample : stats.nan_examples) {
-        text += fmt::format("{}pixel ({}, {}) sample {}", separator, sample.x, sample.y, sample.sample);
+    for (const auto& [name, stage] : stats.nan_examples) {
+        text += fmt::format("{}pixel ({}, {}) sample {} in {}", separator, name.x, name.y, name.sample, stage);
         separator = ", ";
     }
+    if (!stats.nan_examples.empty()) {
+        const SampleName& name = stats.nan_examples.front().name;
+        text += fmt::format("\n  `--replay {},{},{}` in place of the output shows the first of these paths", name.x, name.y, name.sample);
+    }
+    return text;
+}
+
+std::string replay_text(const Replay& replay) {
+    const auto vector = [](const glm::vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); };
+    std::string text;
+    for (const Replay::Vertex& v : replay.vertices) {
+        text += v.shadow ? "  light sample" : fmt::format("vertex {}", v.depth);
+        text += fmt::format(": {}, ", v.stage);
+        if (v.shape && v.primitive) text += fmt::format("{} shape {} primitive {} ", v.shadow ? "from" : "hit", *v.shape, *v.primitive);
+        if (!v.shape) text += "hit nothing, from ";
+        text += fmt::format("at {}, distance {:.9g} along {}, {} {}, pdf {:.9g}, radiance so far {}\n", vector(v.position), v.distance,
+                            vector(v.direction), v.shadow ? "brings" : "throughput", vector(v.throughput), v.pdf, vector(v.radiance));
+    }
+    if (replay.left_out > 0) text += fmt::format("... and {} more\n", replay.left_out);
+    text += fmt::format("radiance of the sample: {}\n", vector(replay.radiance));
+    if (!replay.broken_by.empty()) text += fmt::format("not finite since {}\n", replay.broken_by);
     return text;
 }
 

@@ -24,6 +24,9 @@ std::string closing_line(const RenderReport& report);
 std::string report_table(const RenderReport& report);
 std::string report_json(const RenderReport& report);
 
+// A line a vertex and light sample of the path.
+std::string replay_text(const Replay& replay);
+
 // Names the first of the samples left out; empty when there are none.
 std::string non_finite_warning(const RenderStats& stats);
 

@@ -26,7 +26,9 @@ void mark_masked(Bvh& bvh, const DeviceScene& scene) {
         if ((shape.flags & SHAPE_MASKED) != 0) entry |= PRIMITIVE_MASKED;
     };
     for (TriangleBlock& block : bvh.blocks) {
-        for (std::uint32_t& primitive : block.primitive) mark(primitive, primitive);
+        for (std::uint32_t& primitive : block.primitive) {
+            if (primitive != HIT_NONE) mark(primitive, primitive);
+        }
     }
     for (std::uint32_t& entry : bvh.analytic_order) mark(entry, scene.triangles.size() + entry);
 }

@@ -47,7 +47,10 @@ std::unique_ptr<BlockDriver> make_staged_driver(const RenderContext& context);
 // One launch for all stages of many tiles, a work-item a compute thread.
 std::unique_ptr<BlockDriver> make_one_kernel_driver(const RenderContext& context);
 
-// Takes note of a path whose sample was not finite (WAVELOBE_NONE: none), for the first few.
-void note_nonfinite(RenderStats& stats, const TileRange& range, std::uint32_t path);
+// One path of the block that holds it, into `RenderStats::replay`. One step, and nothing gets into the film.
+std::unique_ptr<BlockDriver> make_replay_driver(const RenderContext& context, const SampleName& sample);
+
+// Takes note of a path whose sample was not finite (WAVELOBE_NONE: none) and of the stage that made it so, for the first few.
+void note_nonfinite(RenderStats& stats, const TileRange& range, std::uint32_t path, std::uint32_t stage);
 
 }  // namespace wavelobe

@@ -116,6 +116,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_THIN_LENS", f.thin_lens);
     out.define("HAS_SIGNED_FILTER", f.signed_filter);
     out.define("HAS_ERROR_ESTIMATE", f.error_estimate);
+    out.define("ESTIMATOR", static_cast<long>(f.estimator));
+    out.define("INDEPENDENT_SAMPLES", f.independent_samples);
     out.define("HIDE_EMITTERS", f.hide_emitters);
     out.define("HAS_MASKS", f.masks);
     out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
@@ -310,13 +312,13 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
     write_lobes(out, features);
     write_lights(out, features);
     for (const std::string& stage : features.stages()) out.include("stages/" + stage + ".h");
-    if (driver == Driver::one_kernel) {
+    if (driver != Driver::staged) {
         out.begin_list("SCENE_STAGES");
         for (std::uint32_t i = 0; i < STAGE_COUNT; ++i) {
             if (features.has_stage(i)) out.list_item(stage_list[i].name, stage_list[i].macro);
         }
         out.end_list();
-        out.include("stages/render_tiles.h");
+        out.include(driver == Driver::replay ? "stages/replay.h" : "stages/render_tiles.h");
     } else {
         out.include("stages/stage_kernel.h");
         for (const std::string& stage : features.stages()) out.line("STAGE_KERNEL(" + stage + ")");

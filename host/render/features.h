@@ -72,6 +72,8 @@ struct FeatureSet {
     bool smooth_cones = false;
     bool media = false;            // some of space absorbs
     bool clear_boundaries = false; // some shapes part media and are not there otherwise
+    Estimator estimator = Estimator::mis;
+    bool independent_samples = false;
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack

@@ -39,7 +39,10 @@ Bounds bounds_of_scene(const DeviceScene& scene) {
 
 class Flattener {
 public:
-    explicit Flattener(const Scene& scene) : scene_(scene), materials_(scene, out_), media_(scene, out_), lights_(materials_, out_) {}
+    Flattener(const Scene& scene, Estimator estimator)
+        : scene_(scene), materials_(scene, out_), media_(scene, out_), lights_(materials_, out_) {
+        out_.features.estimator = estimator;
+    }
 
     DeviceScene run() {
         const std::vector<std::size_t> groups = groups_in_use();
@@ -333,6 +336,6 @@ void Flattener::set_parameters() {
 
 }  // namespace
 
-DeviceScene flatten_scene(const Scene& scene) { return Flattener(scene).run(); }
+DeviceScene flatten_scene(const Scene& scene, Estimator estimator) { return Flattener(scene, estimator).run(); }
 
 }  // namespace wavelobe

@@ -77,6 +77,6 @@ struct DeviceScene {
 
 // Only what a surface or light uses gets into the arrays and the feature set.
 // Throws InputError where a scene cannot be represented.
-DeviceScene flatten_scene(const Scene& scene);
+DeviceScene flatten_scene(const Scene& scene, Estimator estimator = Estimator::mis);
 
 }  // namespace wavelobe

@@ -191,7 +191,7 @@ void LightFlattener::add(const ConstantEmitter& e, double power) {
 
 void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius) {
     const Bitmap image = with_three_rows(e.image);
-    EnvironmentTable table = build_environment_table(image, "envmap", true);
+    EnvironmentTable table = build_environment_table(image, "envmap", out_.features.estimator != Estimator::light);
     const double power = environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius);
     if (!(power > 0.0)) return;
     Environment environment{};

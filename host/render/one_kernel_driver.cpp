@@ -41,7 +41,7 @@ public:
         const auto jobs = context_.buffers.view<TileJob>("tile_jobs");
         std::uint64_t samples = 0;
         for (std::size_t i = 0; i < ranges.size(); ++i) {
-            note_nonfinite(context_.stats, ranges[i], jobs[i].nonfinite_path);
+            note_nonfinite(context_.stats, ranges[i], jobs[i].nonfinite_path, jobs[i].nonfinite_stage);
             context_.scheduler.finish(ranges[i], {jobs[i].error, jobs[i].error_deviation});
             samples += ranges[i].sample_count();
         }
@@ -66,6 +66,7 @@ private:
                                    .first_sample = range->first_sample,
                                    .path_count = TILE_PIXELS * range->samples,
                                    .nonfinite_path = WAVELOBE_NONE,
+                                   .nonfinite_stage = 0,
                                    .error = 0.0F,
                                    .error_deviation = 0.0F};
             ranges.push_back(*range);

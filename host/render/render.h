@@ -18,6 +18,26 @@ namespace wavelobe {
 enum class Driver {
     one_kernel,  // all stages in one launch: a work-item a compute thread, each rendering tile after tile. The faster on CPUs
     staged,      // a launch a stage, over many blocks: stages can be timed and watched one by one
+    replay,      // no picture: one path alone, and what it meets
+};
+
+// Which samples find direct light. All agree in the mean: those of one kind alone are there to compare with.
+enum class Estimator {  // as in kernels/sampling/mis.h
+    mis,
+    bsdf,   // BSDF samples; light samples only of what these cannot hit
+    light,  // light samples; BSDF samples only behind the camera's rays and delta lobes
+};
+
+enum class Sampler {
+    sobol,        // Owen-scrambled
+    independent,  // each sample by itself: to compare with
+};
+
+// A path, by the pixel and the sample it is.
+struct SampleName {
+    int x = 0;
+    int y = 0;
+    std::uint32_t sample = 0;
 };
 
 struct RenderSettings {
@@ -27,6 +47,10 @@ struct RenderSettings {
     Driver driver = Driver::one_kernel;
     double target_error = 0.0;  // relMSE at which a tile takes no more samples; 0: all tiles take all
     double time_limit = 0.0;    // seconds of rendering; 0: none
+    Estimator estimator = Estimator::mis;
+    Sampler sampler = Sampler::sobol;
+    bool always_hierarchy = false;  // even where testing all triangles is faster
+    SampleName replayed;            // with Driver::replay
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
 };
 
@@ -39,9 +63,28 @@ struct StageStats {
 
 // A sample that came out as NaN or infinite: it is left out of the picture and named here.
 struct NonFiniteSample {
-    int x = 0;
-    int y = 0;
-    std::uint32_t sample = 0;
+    SampleName name;
+    std::string stage;  // that made it so
+};
+
+// One path, as Driver::replay follows it.
+struct Replay {
+    struct Vertex {
+        std::string stage;         // that took the path up; intersect_shadow: a light sample's ray
+        std::uint32_t depth = 0;   // of the vertex; not of shadow rays
+        bool shadow = false;
+        std::optional<std::uint32_t> shape, primitive;  // that was hit; shadow rays: that they leave
+        double distance = 0.0;     // length of the ray
+        glm::vec3 position{0.0F};  // of the hit; where the ray starts if nothing was hit, and of shadow rays
+        glm::vec3 direction{0.0F};
+        glm::vec3 throughput{0.0F};  // shadow rays: what they bring if nothing is in the way
+        float pdf = 0.0F;            // that chose the direction; negative: a delta lobe or the camera did
+        glm::vec3 radiance{0.0F};    // of the path so far
+    };
+    std::vector<Vertex> vertices;
+    std::uint64_t left_out = 0;  // vertices that were too many
+    glm::vec3 radiance{0.0F};    // of the sample
+    std::string broken_by;       // the stage, if the radiance is not finite
 };
 
 struct RenderStats {
@@ -54,6 +97,7 @@ struct RenderStats {
     std::map<std::string, std::uint64_t> rays;  // camera, bounce, shadow
     std::vector<std::string> features;          // what the scene made the program contain
     std::vector<StageStats> stages;
+    Replay replay;                              // with Driver::replay
     std::uint64_t device_bytes = 0;             // of all buffers
 
     double setup_seconds() const {

@@ -64,11 +64,12 @@ int slots_of(const RenderSettings& settings) {
 
 }  // namespace
 
-void note_nonfinite(RenderStats& stats, const TileRange& range, std::uint32_t path) {
+void note_nonfinite(RenderStats& stats, const TileRange& range, std::uint32_t path, std::uint32_t stage) {
     if (path == WAVELOBE_NONE || stats.nan_examples.size() >= named_nonfinite_samples) return;
     const std::uint32_t pixel = path % TILE_PIXELS;
-    stats.nan_examples.push_back({static_cast<int>(range.x + TILE_X(pixel)), static_cast<int>(range.y + TILE_Y(pixel)),
-                                  range.first_sample + path / TILE_PIXELS});
+    const SampleName name{static_cast<int>(range.x + TILE_X(pixel)), static_cast<int>(range.y + TILE_Y(pixel)),
+                          range.first_sample + path / TILE_PIXELS};
+    stats.nan_examples.push_back({name, stage_name(stage)});
 }
 
 struct Renderer::State {
@@ -96,9 +97,10 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       slots(slots_of(settings_in)),
       scene_data([&] {
           const auto start = Clock::now();
-          DeviceScene data = flatten_scene(scene);
+          DeviceScene data = flatten_scene(scene, settings_in.estimator);
           data.parameters.seed = settings_in.seed;
           data.parameters.layer_film_step = layer_film_step(settings_in);
+          data.features.independent_samples = settings_in.sampler == Sampler::independent;
           data.features.error_estimate = settings_in.target_error > 0.0;
           refuse_large_film(device_in, data);
           stats.setup_parts["tables"] = seconds_since(start);
@@ -110,7 +112,14 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
     build_geometry();
     const auto start = Clock::now();
     const RenderContext context{device, scene_data.features, buffers, scheduler, timer, stats, slots};
-    driver = settings.driver == Driver::staged ? make_staged_driver(context) : make_one_kernel_driver(context);
+    switch (settings.driver) {
+        case Driver::one_kernel: driver = make_one_kernel_driver(context); break;
+        case Driver::staged: driver = make_staged_driver(context); break;
+        case Driver::replay:
+            settings.lanes = 1;
+            driver = make_replay_driver(context, settings.replayed);
+            break;
+    }
     stats.device_bytes = buffers.total_bytes();
     stats.features = scene_data.features.names();
     stats.setup_parts["tables"] += seconds_since(start);
@@ -121,7 +130,7 @@ void Renderer::State::build_geometry() {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
-    const FewTriangleSet few = scene_data.features.instances ? FewTriangleSet{} : find_few_triangles(bvh);
+    const FewTriangleSet few = scene_data.features.instances || settings.always_hierarchy ? FewTriangleSet{} : find_few_triangles(bvh);
     scene_data.features.few_triangles = !few.triangles.empty();
     scene_data.parameters.few = few.summary;
     stats.setup_parts["bvh"] = seconds_since(start);
@@ -152,6 +161,10 @@ bool Renderer::State::render(const ProgressCallback& progress) {
     // Not even emitters are seen along a path of no edges.
     const bool anything = scene_data.parameters.max_depth > 0;
     while (anything && !scheduler.finished()) {
+        if (settings.driver == Driver::replay) {
+            driver->step(no_limit);
+            return true;
+        }
         const double left = settings.time_limit > 0.0 ? settings.time_limit - seconds_since(start) : no_limit;
         if (left <= 0.0) break;
         driver->step(left);

@@ -117,7 +117,7 @@ private:
         for (std::size_t i = 0; i < headers_.size(); ++i) {
             if (!busy[i] || headers_[i].path_count != 0) continue;
             collected += ranges_[i].sample_count();
-            note_nonfinite(context_.stats, ranges_[i], headers_[i].nonfinite_path);
+            note_nonfinite(context_.stats, ranges_[i], headers_[i].nonfinite_path, headers_[i].nonfinite_stage);
             context_.scheduler.finish(ranges_[i], {headers_[i].error, headers_[i].error_deviation});
         }
         context_.timer.add_launch(STAGE_ACCUMULATE, collected, std::move(event));

@@ -134,6 +134,28 @@ INLINE void add_radiance(Block b, UInt id, Rgb radiance, uint bits) {
     }
 }
 
+// The red channel of a sample that met what is no finite number: a quiet NaN that carries the stage, and keeps it in sums.
+#define BROKEN_SAMPLE 0x7fc00000u
+
+// Marks the samples of the live lanes in which `finiteness` is not zero, and returns these lanes. Comparisons are false for what is
+// not a number: without this such paths would end unseen.
+INLINE Int mark_broken(Block b, uint stage, UInt id, Int live, Float finiteness) {
+    Int broken = live & !(finiteness == 0.0f);
+    uint bits = lane_bits(broken);
+    if (UNLIKELY(bits != 0u)) {
+        global float *red = radiance_channel(b, 0u);
+        Float before = gather(red, id); // the first stage to break a sample is the one that counts
+        scatter(red, id, as_Float((UInt)(BROKEN_SAMPLE + 1u + stage)), bits & lane_bits(before == before));
+    }
+    return broken;
+}
+
+// The stage that broke a sample whose radiance is not finite; by itself, without any stage's doing, a sum overflows.
+INLINE uint breaking_stage(float red) {
+    uint carried = as_uint(red) - BROKEN_SAMPLE;
+    return carried != 0u && carried <= (uint)STAGE_COUNT ? carried - 1u : (uint)STAGE_ACCUMULATE;
+}
+
 // ---- which pixel and sample a path is --------------------------------------------------------------------
 
 INLINE UInt path_pixel_x(Block b, UInt id) { return TILE_X(id) + (UInt)b.header->tile_x; }

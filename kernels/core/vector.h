@@ -27,6 +27,8 @@ INLINE Vec3 absolute(Vec3 a) { return vec3(fabs(a.x), fabs(a.y), fabs(a.z)); }
 INLINE Float dot3(Vec3 a, Vec3 b) { return madd(a.x, b.x, madd(a.y, b.y, a.z * b.z)); }
 INLINE Float length_squared(Vec3 a) { return dot3(a, a); }
 INLINE Float max_component(Vec3 a) { return GREATER(a.x, GREATER(a.y, a.z)); }
+// Zero where all components are finite, NaN where one is not.
+INLINE Float finiteness3(Vec3 a) { return madd(ZERO, a.x, madd(ZERO, a.y, ZERO * a.z)); }
 INLINE Vec3 select3(Int mask, Vec3 a, Vec3 b) {
     return vec3(SELECT(mask, a.x, b.x), SELECT(mask, a.y, b.y), SELECT(mask, a.z, b.z));
 }

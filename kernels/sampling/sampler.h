@@ -75,6 +75,12 @@ INLINE SampleId sample_id(UInt x, UInt y, UInt index, uint seed) {
 // Two values of the 2D pair number `pair`, in [0, 1).
 INLINE void sample_2d(SampleId id, UInt pair, Float *u1, Float *u2) {
     UInt shuffle_seed = mix_bits(id.pixel_hash + pair * (UInt)0x9e3779b9u); // golden ratio: spreads small counts
+#if INDEPENDENT_SAMPLES // to compare with: every sample drawn by itself
+    UInt h = mix_bits(shuffle_seed + mix_bits(id.reversed_index + (UInt)0x9e3779b9u));
+    *u1 = unit_float(h);
+    *u2 = unit_float(mix_bits(h + (UInt)0x9e3779b9u));
+    return;
+#endif
     UInt seed1 = next_seed(shuffle_seed);
     UInt seed2 = next_seed(seed1);
     UInt index = reverse_bits(scramble_reversed(id.reversed_index, shuffle_seed));

@@ -46,7 +46,8 @@ struct BlockHeader {
     Uint32 traced;             // all rays of the last round
     float error;               // of a scene with HAS_ERROR_ESTIMATE: relMSE of the tile so far
     float error_deviation;     // standard error of that estimate
-    Uint32 unused[3];
+    Uint32 nonfinite_stage;    // that made it so, STAGE_x
+    Uint32 unused[2];
 };
 WAVELOBE_CHECK_SIZE(BlockHeader, 80);
 
@@ -56,16 +57,38 @@ struct TileJob {
     Uint32 first_sample;
     Uint32 path_count;
     // Written when it is done:
-    Uint32 nonfinite_path;
+    Uint32 nonfinite_path, nonfinite_stage;
     float error, error_deviation;
 };
-WAVELOBE_CHECK_SIZE(TileJob, 28);
+WAVELOBE_CHECK_SIZE(TileJob, 32);
 
 struct TileQueue {
     Uint32 next;  // first job that no block has taken
     Uint32 count;
 };
 WAVELOBE_CHECK_SIZE(TileQueue, 8);
+
+// What one path met, for replay_path: a record a stage that took it up.
+struct ReplayRecord {
+    Uint32 stage, depth;
+    Uint32 shape, primitive;     // that was hit; WAVELOBE_NONE: none. Shadow rays: that they leave
+    float t;                     // length of the ray
+    struct Packed3 position;     // of the hit; of rays that hit nothing and of shadow rays: where they start
+    struct Packed3 direction;    // of the ray
+    struct Packed3 throughput;   // of the path; shadow rays: what they bring if nothing is in the way
+    float pdf;                   // that chose the direction; negative: a delta lobe or the camera did
+    struct Packed3 radiance;     // of the path, after the stage
+};
+WAVELOBE_CHECK_SIZE(ReplayRecord, 72);
+
+struct ReplayLog {
+    Uint32 path;                 // id
+    Uint32 count;                // of records; those beyond REPLAY_RECORDS are not kept
+    Uint32 stage;                // that broke the sample, should it not be finite
+    struct Packed3 radiance;     // of the sample
+};
+WAVELOBE_CHECK_SIZE(ReplayLog, 24);
+#define REPLAY_RECORDS 4096u
 
 // What render_tiles did in one stage of one block's rounds.
 struct StageCounters {

@@ -83,6 +83,7 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
                 finite++;
             } else {
                 h->nonfinite_path = id;
+                h->nonfinite_stage = breaking_stage(red[id]);
                 nonfinite++;
             }
             red[id] = green[id] = blue[id] = 0.0f;

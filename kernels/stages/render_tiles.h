@@ -52,6 +52,7 @@ kernel void render_tiles(global struct BlockHeader *headers, global float *block
 #undef RUN_STAGE
         }
         tile_jobs[job].nonfinite_path = block.header->nonfinite_path;
+        tile_jobs[job].nonfinite_stage = block.header->nonfinite_stage;
 #if HAS_ERROR_ESTIMATE
         tile_jobs[job].error = block.header->error;
         tile_jobs[job].error_deviation = block.header->error_deviation;

@@ -20,8 +20,13 @@ INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
         Vec3 direction = normalize3(to_world(surface.frame, s.wo));
         Rgb throughput = scale(mul(path.throughput, s.weight), MAPPED_SHARE(&surface, direction));
         Float eta = PATH_ETA_OF(path) * s.eta;
+        // No direction goes with a weight of zero.
+        Int goes = path.live & !(max_component(s.weight) <= 0.0f);
+        Float finite = finiteness3(s.weight) + finiteness3(s.wo) + finiteness3(surface.position) + finiteness3(surface.wi) +
+                       SELECT(goes, finiteness3(throughput), ZERO);
+        Int broken = mark_broken(block, STAGE_SCATTER_DELTA, path.id, path.live, finite);
         Int alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput,
-                             path.live & (max_component(throughput) > 0.0f));
+                             path.live & !broken & (max_component(throughput) > 0.0f));
 #if HAS_MEDIA
         UInt medium = medium_beyond(scene->media, scene->surfaces, &surface, direction, path.medium);
         append_uint(rays, PATH_MEDIUM, appended, medium, lane_bits(alive));

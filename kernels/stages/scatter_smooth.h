@@ -13,7 +13,7 @@
 #define SHADOW_REACH (1.0f - 2.0f * GAMMA(16))
 
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
-INLINE uint sample_direct_light(Queue shadow, uint at, const SceneView *scene, SampleId sample, const TracedPath *path,
+INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneView *scene, SampleId sample, const TracedPath *path,
                                 const Surface *surface, const SmoothLobes *lobes, UInt receiver) {
     LightInput in = scene->lights;
     Float u_light = ZERO, u1, u2;
@@ -28,18 +28,22 @@ INLINE uint sample_direct_light(Queue shadow, uint at, const SceneView *scene, S
     Float choice = choose_light(&in, u_light);
 #endif
     LightSample light = sample_light(in, surface->position, u1, u2);
-    Int shines = path->live & (choice > 0.0f) & (light.pdf > 0.0f) & (max_component(light.radiance) > 0.0f);
+    Int broken = mark_broken(block, stage, path->id, path->live & !(choice <= 0.0f),
+                             finiteness3(light.radiance) + finiteness3(vec3(choice, light.pdf, light.direction.x)));
+    Int shines = path->live & !broken & (choice > 0.0f) & (light.pdf > 0.0f) & (max_component(light.radiance) > 0.0f);
     if (!any_lane(shines)) return at;
 
     LobeValue value = eval_smooth_lobes(lobes, surface->wi, to_local(surface->frame, light.direction));
     value.f_cos = scale(value.f_cos, MAPPED_SHARE(surface, light.direction));
     Float pdf = choice * light.pdf;
-    Float weight = SELECT(light.delta, ONE, power_heuristic(pdf, value.pdf));
+    Float weight = SELECT(light.delta, ONE, light_sample_weight(pdf, value.pdf));
     Rgb contribution = scale(mul(mul(path->throughput, value.f_cos), light.radiance), weight / pdf);
-    Int contributes = shines & (max_component(contribution) > 0.0f);
+    broken = mark_broken(block, stage, path->id, shines, finiteness3(contribution));
+    Int contributes = shines & !broken & (max_component(contribution) > 0.0f);
     uint bits = lane_bits(contributes);
     if (bits == 0u) return at;
 
+    Queue shadow = QUEUE(block, SHADOW);
     // From beyond the surface's rounding error to before the light's.
     Vec3 origin = offset_ray_origin(surface->position, surface->error, surface->normal, light.direction);
     Vec3 target = offset_ray_origin(light.point, light.error, light.normal, negate(light.direction));
@@ -90,6 +94,7 @@ INLINE UInt surface_receiver(SurfaceView view, const Surface *surface) {
 // The body of both stages: `lobe_class` is a constant.
 INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
+    const uint stage = lobe_class == LOBE_CLASS_GLOSSY ? STAGE_SCATTER_GLOSSY : STAGE_SCATTER_DIFFUSE;
     Queue rays = QUEUE(block, RAYS);
     uint n = *paths.count, appended = *rays.count, shadows = block.header->count[QUEUE_SHADOW];
     for (uint i = 0u; i < n; i += LANES) {
@@ -100,7 +105,7 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
 #if HAS_LIGHTS
         UInt receiver = surface_receiver(scene->surfaces, &surface);
-        shadows = sample_direct_light(QUEUE(block, SHADOW), shadows, scene, sample, &path, &surface, &lobes, receiver);
+        shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes, receiver);
 #endif
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
@@ -108,7 +113,9 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Vec3 direction = normalize3(to_world(surface.frame, wo));
         Float share = MAPPED_SHARE(&surface, direction) / SELECT(alive, value.pdf, ONE);
         Rgb throughput = mul(path.throughput, scale(value.f_cos, share));
-        alive &= max_component(throughput) > 0.0f;
+        Float finite = finiteness3(wo) + finiteness3(surface.position) + finiteness3(surface.wi) + finiteness3(value.f_cos) +
+                       ZERO * value.pdf + SELECT(alive, finiteness3(throughput), ZERO);
+        alive &= !mark_broken(block, stage, path.id, path.live, finite) & (max_component(throughput) > 0.0f);
         Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
 #if HAS_LIGHT_TREE

@@ -76,10 +76,12 @@ INLINE uint run_shade_emitted(Block block, const SceneView *scene) {
             Float choice = GATHER_FIELD(in.lights, Light, in.light, selection_probability);
 #endif
             Float light_pdf = choice * surface_light_pdf(in, reference, path.direction, path.t, normal);
-            weight = SELECT(sampled, power_heuristic(path.pdf, light_pdf), ONE);
+            weight = SELECT(sampled, bsdf_sample_weight(path.pdf, light_pdf), ONE);
         }
         Rgb gain = scale(mul(path.throughput, radiance), weight);
-        add_radiance(block, path.id, gain, lane_bits(facing));
+        Float finite = finiteness3(normal) + SELECT(facing, finiteness3(gain), ZERO);
+        Int broken = mark_broken(block, STAGE_SHADE_EMITTED, path.id, path.live, finite);
+        add_radiance(block, path.id, gain, lane_bits(facing & !broken));
     }
     *emitted.count = 0u;
     return n;

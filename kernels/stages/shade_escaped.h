@@ -25,11 +25,13 @@ INLINE uint run_shade_escaped(Block block, const SceneView *scene) {
 #else
         Float choice = GATHER_FIELD(in.lights, Light, in.light, selection_probability);
 #endif
-        Float weight = SELECT(path.pdf >= 0.0f, power_heuristic(path.pdf, choice * pdf), ONE);
+        Float weight = SELECT(path.pdf >= 0.0f, bsdf_sample_weight(path.pdf, choice * pdf), ONE);
 #if HIDE_EMITTERS
         weight = SELECT(path.depth == (UInt)0u, ZERO, weight);
 #endif
-        add_radiance(block, path.id, scale(mul(path.throughput, radiance), weight), lane_bits(path.live));
+        Rgb gain = scale(mul(path.throughput, radiance), weight);
+        Int broken = mark_broken(block, STAGE_SHADE_ESCAPED, path.id, path.live, finiteness3(gain));
+        add_radiance(block, path.id, gain, lane_bits(path.live & !broken));
     }
     *escaped.count = 0u;
     return n;

@@ -33,6 +33,7 @@ INLINE Continuation choose_class(Block block, const SceneView *scene, const Trac
     sample_2d(sample, vertex_pair(path->depth, PAIR_SURVIVAL), &unused, &u);
     Float smooth = w.glossy + w.diffuse, all = w.delta + smooth;
     Float at = u * all;
+    scattering &= !mark_broken(block, STAGE_SORT_PATHS, path->id, scattering, ZERO * all);
     Int delta = at < w.delta;
     Continuation c;
     scattering &= all > 0.0f;

@@ -105,7 +105,17 @@ TEST_F(Program, RefusesWrongCommandLines) {
     expect_refused({"render", "scene.xml", "-o", "a.exr", "--crop", "0,0,8"}, "\"0,0,8\" is not of the form X0,Y0,X1,Y1");
     expect_refused({"render", "scene.xml", "-o", "a.exr", "--crop", "0,0,65,48"}, "film of 64 x 48 pixels");
     expect_refused({"render", "scene.xml", "-o", "a.exr", "--crop", "8,8,8,9"}, "at least one pixel");
+    expect_refused({"render", "scene.xml", "--replay", "1,2"}, "\"1,2\" is not of the form X,Y,S");
+    expect_refused({"render", "scene.xml", "--replay", "64,2,0"}, "columns are 0 to 63, rows 0 to 47");
     EXPECT_FALSE(fs::exists(path("a.exr")));
+}
+
+TEST_F(Program, ReplaysAPath) {
+    const Result result = run({"render", "scene.xml", "--replay", "32,24,1", "--quiet"});
+    EXPECT_EQ(result.code, exit_ok) << result.errors;
+    EXPECT_EQ(result.output.rfind("vertex 0: scatter_diffuse, hit shape 0 primitive ", 0), 0U) << result.output;
+    EXPECT_NE(result.output.find("\n  light sample: intersect_shadow, from shape 0 "), std::string::npos) << result.output;
+    EXPECT_EQ(last_line(result.output).rfind("radiance of the sample: (0.", 0), 0U) << result.output;
 }
 
 TEST_F(Program, NamesAMissingSceneOrPicture) {
@@ -300,10 +310,10 @@ TEST(Format, ClosingLineAndWarning) {
     EXPECT_EQ(closing_line(report), "render 3.142 s, setup 0.210 s, 41.2 M samples, 13.1 M samples/s");
     EXPECT_EQ(non_finite_warning(report.stats), "");
     report.stats.nan_samples = 3;
-    report.stats.nan_examples = {{4, 5, 6}, {7, 8, 9}};
+    report.stats.nan_examples = {{{4, 5, 6}, "sort_paths"}, {{7, 8, 9}, "scatter_delta"}};
     EXPECT_EQ(non_finite_warning(report.stats),
-              "3 samples were NaN or infinite and are left out of the picture; the first: pixel (4, 5) sample 6, "
-              "pixel (7, 8) sample 9");
+              "3 samples were NaN or infinite and are left out of the picture; the first: pixel (4, 5) sample 6 in sort_paths, "
+              "pixel (7, 8) sample 9 in scatter_delta\n  `--replay 4,5,6` in place of the output shows the first of these paths");
 }
 
 }  // namespace

@@ -51,6 +51,22 @@ Phong shiny_phong(float exponent) {
     return {constant(Rgb{0.3F, 0.2F, 0.1F}), constant(Rgb{0.2F, 0.3F, 0.4F}), constant(exponent)};
 }
 
+RoughPlastic dark_rough_plastic() {
+    RoughPlastic plastic;
+    plastic.diffuse_reflectance = constant(0.0F);
+    plastic.alpha = 0.3F;
+    return plastic;
+}
+
+// Half metal, half paint.
+MetallicRoughness painted_metal() {
+    MetallicRoughness material;
+    material.base_color = constant(Rgb{0.9F, 0.5F, 0.3F});
+    material.metallic = constant(0.5F);
+    material.roughness = constant(0.6F);
+    return material;
+}
+
 using Evals = std::vector<ReferenceEval>;
 
 // ---- a directional light: the value of the smooth lobes, exactly ----------------------------------------------
@@ -85,7 +101,7 @@ TEST_P(DirectionalLight, ShowsTheLobesValue) {
     EXPECT_GT(glm::length(expected), 1e-3) << "nothing is tested";
     if (std::holds_alternative<Plastic>(lit.model)) {
         // Some paths follow the coat instead, and see no light.
-        expect_mean(render(looked.scene, 256).image, expected * glm::dvec3(radiance));
+        expect_closed_form(looked.scene, 256, expected * glm::dvec3(radiance));
         return;
     }
     // Directions are known to a few roundings, which narrow lobes magnify.
@@ -192,7 +208,7 @@ TEST_P(EvenEnvironments, GiveTheAlbedo) {
         for (const DeltaBranch& branch : energy.delta(material, looked.wi))
             albedo += branch.probability * branch.weight;
     }
-    expect_mean(render(looked.scene, 64).image, albedo * glm::dvec3(radiance));
+    expect_closed_form(looked.scene, 64, albedo * glm::dvec3(radiance));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -205,6 +221,12 @@ INSTANTIATE_TEST_SUITE_P(
         Energy{"glass_from_below", rough_glass(Distribution::ggx, 0.4F), {reference_rough_dielectric}, {}, 130},
         Energy{"plastic", red_plastic(false), {reference_plastic_base}, reference_plastic_coat, 40},
         Energy{"plastic_nonlinear", red_plastic(true), {reference_plastic_base}, reference_plastic_coat, 75},
+        Energy{"rough_plastic_coat", dark_rough_plastic(), {reference_rough_plastic_coat}, {}, 50},
+        Energy{"metallic_roughness",
+               painted_metal(),
+               {reference_metallic_roughness, reference_metallic_roughness_base},
+               {},
+               40},
         Energy{"phong", shiny_phong(20.0F), {reference_phong, reference_lambert}, {}, 40},
         Energy{"lambert", Diffuse{constant(Rgb{0.2F, 0.5F, 1.0F})}, {reference_lambert}, {}, 70}),
     [](const auto& energy) { return energy.param.name; });
@@ -216,7 +238,7 @@ TEST(EvenEnvironment, PhongReflectsItsSpecularPart) {
         phong.diffuse_reflectance = constant(0.0F);
         Looked looked = quad_seen_from(0.0, phong);
         looked.scene.emitters.emplace_back(ConstantEmitter{radiance});
-        expect_mean(render(looked.scene, 256).image, glm::dvec3{0.2F, 0.3F, 0.4F} * glm::dvec3(radiance));
+        expect_closed_form(looked.scene, 256, glm::dvec3{0.2F, 0.3F, 0.4F} * glm::dvec3(radiance));
     }
 }
 
@@ -249,11 +271,10 @@ TEST(Sides, OfDifferentLobeClasses) {
         Looked looked = quad_seen_from(view, Conductor{});
         looked.scene.shapes[0].material.back = add_diffuse(looked.scene, {0.2F, 0.4F, 0.6F});
         looked.scene.emitters.emplace_back(ConstantEmitter{radiance});
-        const Image image = render(looked.scene, 64).image;
         if (view < 90.0) {
-            expect_every_pixel(image, radiance);
+            expect_every_pixel(render(looked.scene, 64).image, radiance);
         } else {
-            expect_mean(image, glm::dvec3{0.2F, 0.4F, 0.6F} * glm::dvec3(radiance));
+            expect_closed_form(looked.scene, 64, glm::dvec3{0.2F, 0.4F, 0.6F} * glm::dvec3(radiance));
         }
     }
 }

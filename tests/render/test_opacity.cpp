@@ -62,7 +62,7 @@ TEST_P(OpacityOf, SheetsInARowMultiply) {
     if (GetParam() == Geometry::hierarchy) add_crowd(scene);
     const float opacities[] = {0.25F, 0.5F, 0.125F};
     for (int i = 0; i < 3; ++i) set_opacity(add_sheet(scene, GetParam(), 2.0F + static_cast<float>(i), black), opacities[i]);
-    expect_mean(render(scene, 64).image, glm::dvec3(sky) * (0.75 * 0.5 * 0.875));
+    expect_closed_form(scene, 64, glm::dvec3(sky) * (0.75 * 0.5 * 0.875));
 }
 
 // A floor under a point light above a sheet: next-event estimation sees the light through the sheet.
@@ -82,7 +82,7 @@ TEST_P(OpacityOf, LightFallsThrough) {
     scene.emitters.emplace_back(PointEmitter{{0, 2, 0}, {8, 4, 2}});
     look_at_point(scene, {1.9F, 0.5F, 0}, {0, 0, 0});
     const double falls = 0.25 * static_cast<double>(albedo) / std::numbers::pi / 4.0;
-    expect_mean(render(scene, 256).image, glm::dvec3{8, 4, 2} * falls);
+    expect_closed_form(scene, 256, glm::dvec3{8, 4, 2} * falls);
 }
 
 // A mask of nothing but 0 and 1 needs no chance: each pixel is right after one sample.
@@ -114,7 +114,7 @@ TEST_P(OpacityOf, CutoffAndScale) {
     cut.cutoff = 0.45F;
     expect_every_pixel(render(scene, 1).image, glm::dvec3(0));
     cut.cutoff.reset();
-    expect_mean(render(scene, 256).image, glm::dvec3(sky) * 0.55);
+    expect_closed_form(scene, 256, glm::dvec3(sky) * 0.55);
 }
 
 TEST_P(OpacityOf, IsTheSameAtEachWidth) {
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(All, OpacityOf, testing::Values(Geometry::few_triangles
 TEST(Opacity, BothSidesOfASphere) {
     Scene scene = sky_scene(48);
     set_opacity(add_sphere(scene, {0, 0, 5}, 3.0F, add_diffuse(scene, Rgb{0})), 0.5F);
-    expect_mean(render(scene, 64).image, glm::dvec3(sky) * 0.25);
+    expect_closed_form(scene, 64, glm::dvec3(sky) * 0.25);
 }
 
 // What an emitter sends out is not lessened by its opacity, which only says how much is seen behind it.
@@ -160,7 +160,7 @@ TEST_P(VeiledEmitter, ShinesBeforeWhatIsBehind) {
     }
     make_emitter(veil, {4, 3, 2});
     set_opacity(veil, 0.75F);
-    expect_mean(render(scene, 64).image, glm::dvec3{4, 3, 2} + 0.25 * glm::dvec3(sky));
+    expect_closed_form(scene, 64, glm::dvec3{4, 3, 2} + 0.25 * glm::dvec3(sky));
     set_opacity(veil, 0.0F);
     expect_every_pixel(render(scene, 1).image, glm::dvec3{4, 3, 2} + glm::dvec3(sky));
 }

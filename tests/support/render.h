@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "host/scene_files.h"
 #include "render/render.h"
 #include "support/probe.h"
 #include "support/scenes.h"
+#include "support/verification.h"
 
 namespace wavelobe::test {
 
@@ -66,6 +69,31 @@ inline void expect_mean(const Image& image, const glm::dvec3& expected) {
         // A test that noise could hide anything from would say nothing.
         EXPECT_LT(found.standard_error[c], 0.005 * expected[c]) << "channel " << c << ": too noisy a picture";
     }
+}
+
+// A scene of known radiance: the mean of its picture is that within 4 standard errors, and in the long run of ten million
+// samples within 0.1 %. A claim of the accuracy report, named by its test.
+inline void expect_closed_form(const Scene& scene, int samples_per_pixel, const glm::dvec3& expected) {
+    const std::string test = test_of_claim();
+    static std::map<std::string, int> pictures;  // of each test
+    const int number = ++pictures[test];
+    Claim claim("Light transport", "Closed form " + test + (number > 1 ? ", picture " + std::to_string(number) : ""), "of what is allowed");
+    const auto pixels = static_cast<double>(scene.film.crop_width * scene.film.crop_height);
+    const auto most = static_cast<int>(std::ceil(1e7 / pixels));
+    const Rendering rendering = render(scene, quick_or_full(samples_per_pixel, std::max(samples_per_pixel, most)));
+    const PictureMean found = picture_mean(rendering.image);
+    for (glm::length_t c = 0; c < 3; ++c) {
+        const double off = found.mean[c] - expected[c];
+        const double allowed = 4.0 * found.standard_error[c] + path_rounding * expected[c];
+        const double at_most = std::min(allowed, (verify_fully() ? 1e-3 : 2e-2) * expected[c]);
+        claim.observe(std::abs(off) / at_most, [&] {
+            return fmt::format("channel {}: {:+.1e} of {:.4g}, standard error {:.1e}", c, off / expected[c], expected[c], found.standard_error[c] / expected[c]);
+        });
+        // A test that noise could hide anything from would say nothing.
+        EXPECT_LT(found.standard_error[c], 0.005 * expected[c]) << "channel " << c << ": too noisy a picture";
+    }
+    claim.count(rendering.stats.samples);
+    claim.at_most(1.0);
 }
 
 // Every pixel is `expected`, but for rounding: what no random choice changes.
