@@ -68,7 +68,12 @@ void LightFlattener::add_placed_light(const Light& light, double power, const Li
 void LightFlattener::add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh) {
     const MeshRadiance radiance{materials_.rgb(emitter.radiance), mean_luminance(emitter.radiance), uvs_of(emitter, mesh)};
     if (mesh.parallelogram) {
-        add_planar(mesh, LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
+        const glm::dvec3 p(mesh.positions[0]);
+        const glm::dvec3 e1 = glm::dvec3(mesh.positions[1]) - p;
+        const glm::dvec3 e2 = glm::dvec3(mesh.positions[3]) - p;
+        // Perpendicular to the rounding of the corners.
+        const bool rectangle = std::abs(glm::dot(e1, e2)) <= 1e-6 * glm::length(e1) * glm::length(e2);
+        add_planar(mesh, rectangle ? LIGHT_RECTANGLE : LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
         return;
     }
     for (const glm::uvec3& t : mesh.triangles) add_planar(mesh, LIGHT_TRIANGLE, radiance, t);
@@ -98,7 +103,7 @@ void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const
         light.uv[2 * i + 1] = uv.y;
     }
     LightBounds bounds = bounds_about({p, p + e1, p + e2});
-    if (kind == LIGHT_PARALLELOGRAM) bounds = bounds_about({p, p + e1, p + e2, p + e1 + e2});
+    if (kind != LIGHT_TRIANGLE) bounds = bounds_about({p, p + e1, p + e2, p + e1 + e2});
     bounds.axis = glm::normalize(cross);
     bounds.emission = 0.5 * std::numbers::pi;
     bounds.intensity = area * radiance.mean;

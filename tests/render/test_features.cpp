@@ -42,7 +42,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 // Text of a header is marked by its path; what stands behind a feature of 0 is not compiled.
 TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
     const std::string text = program_text(diffuse_scene());
-    for (const char* present : {"\"bsdf/lambert.h\"", "\"lights/parallelogram.h\"", "uint run_scatter_diffuse",
+    for (const char* present : {"\"bsdf/lambert.h\"", "\"lights/rectangle.h\"", "uint run_scatter_diffuse",
                                 "uint run_shade_emitted", "uint run_intersect_shadow"}) {
         EXPECT_TRUE(contains(text, present)) << present;
     }
@@ -60,7 +60,7 @@ TEST(Features, ProgramOfADiffuseSceneHoldsNothingElse) {
 }
 
 TEST(Features, AreNamed) {
-    std::vector<std::string> expected{"lobe:lambert", "light:parallelogram", "unlike_sides"};
+    std::vector<std::string> expected{"lobe:lambert", "light:rectangle", "unlike_sides"};
     EXPECT_EQ(flatten_scene(diffuse_scene()).features.names(), expected);
     expected.emplace_back("few_triangles");  // known once the hierarchy is
     EXPECT_EQ(render(diffuse_scene(), 16).stats.features, expected);
@@ -108,7 +108,7 @@ TEST_P(Additions, BringWhatTheyNeed) {
     std::string element = GetParam().element;
     if (element.starts_with("<bsdf")) element = sphere + element + "</shape>";
     std::vector<std::string> found = flatten_scene(diffuse_scene(element)).features.names();
-    std::vector<std::string> expected{"lobe:lambert", "light:parallelogram", "unlike_sides"};
+    std::vector<std::string> expected{"lobe:lambert", "light:rectangle", "unlike_sides"};
     expected.insert(expected.end(), GetParam().features.begin(), GetParam().features.end());
     std::sort(found.begin(), found.end());
     std::sort(expected.begin(), expected.end());

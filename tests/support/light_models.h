@@ -59,12 +59,14 @@ inline double polygon_irradiance(const std::vector<glm::dvec3>& vertices, const 
     return 0.5 * std::abs(sum);
 }
 
-inline std::vector<LightModel> planar_models(LightBuffers& buffers, bool triangle) {
+inline std::vector<LightModel> planar_models(LightBuffers& buffers, bool triangle, bool rectangle = false) {
     std::vector<LightModel> models;
     for (double size : {1e-6, 1.0, 1e6}) {
         const glm::vec3 p(glm::dvec3(0.3, -0.2, 0.9) * size);
         const glm::vec3 e1(glm::dvec3(1.1, 0.2, 0.3) * size);
-        const glm::vec3 e2(glm::dvec3(-0.3, 0.8, 0.1) * size);
+        glm::dvec3 side(-0.3, 0.8, 0.1);
+        if (rectangle) side = 0.7 * glm::normalize(glm::cross(side, glm::dvec3(e1)));
+        const glm::vec3 e2(side * size);
         buffers.lights.push_back(planar_light(p, e1, e2, triangle ? 0.5 : 1.0));
         const glm::dvec3 normal = unpacked(buffers.lights.back().normal);
         const glm::dvec3 a(p);
@@ -278,6 +280,7 @@ inline LightModels light_models(const std::string& name) {
     LightBuffers& buffers = all.buffers;
     if (name == "triangle") all.models = planar_models(buffers, true);
     if (name == "parallelogram") all.models = planar_models(buffers, false);
+    if (name == "rectangle") all.models = planar_models(buffers, false, true);
     if (name == "sphere") all.models = sphere_models(buffers);
     if (name == "disk") all.models = disk_models(buffers);
     if (name == "cylinder") all.models = cylinder_models(buffers);
