@@ -105,7 +105,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_NESTING", f.material_levels > 0);
     out.define_unsigned("MATERIAL_LEVELS", f.material_levels);
     out.define("HAS_TRANSMISSION", f.transmission);
-    out.define("HAS_LAYERS", has_bit(f.lobes, LOBE_LAYERED_METALLIC_ROUGHNESS));
+    out.define("HAS_LAYERED_LOBES", has_bit(f.lobes, LOBE_LAYERED_METALLIC_ROUGHNESS));
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
     out.define("HAS_SIDES_BY_WINDING", f.sides_by_winding);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);

@@ -68,7 +68,7 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
 INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId sample, UInt depth, Vec3 wi) {
     Float u1, u2, u3 = ZERO;
     sample_2d(sample, vertex_pair(depth, PAIR_DIRECTION), &u1, &u2);
-#if HAS_TRANSMISSION || HAS_LAYERS || HAS_LOBE_PRINCIPLED // a lobe on both sides, or of several parts, chooses among them
+#if HAS_TRANSMISSION || HAS_LAYERED_LOBES || HAS_LOBE_PRINCIPLED // a lobe on both sides, or of several parts, chooses among them
     Float unused;
     sample_2d(sample, vertex_pair(depth, PAIR_CHOICE), &unused, &u3);
 #endif
