@@ -35,11 +35,11 @@ INLINE Layered load_layered(MaterialInput in) {
     Int there = (as_UInt(load_constant(in, lobes)) & (UInt)(1u << LOBE_LAYERED_METALLIC_ROUGHNESS)) != (UInt)0u;
 #endif
     MaterialInput layers = extension_of(in);
-    l.coat = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, coat));
-    l.coat_microfacets = rough_microfacets(load_extension_float(layers, there, MetallicRoughnessLayers, coat_roughness));
-    l.transmission = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, transmission));
-    Float specular = unit_share(load_extension_float(layers, there, MetallicRoughnessLayers, specular));
-    Rgb f0 = load_extension_rgb(layers, there, MetallicRoughnessLayers, specular_color);
+    l.coat = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat));
+    l.coat_microfacets = rough_microfacets(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat_roughness));
+    l.transmission = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, transmission));
+    Float specular = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, specular));
+    Rgb f0 = load_scaled_record_rgb(layers, there, MetallicRoughnessLayers, specular_color);
     l.material.f0 = vec3(LESSER(f0.x, ONE) * specular, LESSER(f0.y, ONE) * specular, LESSER(f0.z, ONE) * specular);
     l.material.f90 = specular;
     return l;

@@ -71,8 +71,8 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 }
 
 // load_rgb(in, diffuse) and load_float(in, alpha_u): a parameter of each lane, textured or not. The scaled forms are products of
-// the constant and the texture, where load_rgb takes the texture in its place; those of an extension are such products.
-// load_record_rgb and load_record_float read another kind of record than Material.
+// the constant and the texture, where load_rgb takes the texture in its place. Those of a record read another kind of record than
+// Material, which the lanes of `there` have.
 #if HAS_TEXTURES
 #include "bsdf/texture.h"
 #else
@@ -80,10 +80,10 @@ INLINE Rgb constant_rgb(MaterialInput in, uint offset) {
 #define load_float(in, field) constant_float(in, WORD_OFFSET(Material, field))
 #define load_scaled_rgb(in, field) load_rgb(in, field)
 #define load_scaled_float(in, field) load_float(in, field)
-#define load_extension_rgb(in, there, type, field) constant_rgb(in, WORD_OFFSET(type, field))
-#define load_extension_float(in, there, type, field) constant_float(in, WORD_OFFSET(type, field))
-#define load_record_rgb(in, type, field) constant_rgb(in, WORD_OFFSET(type, field))
-#define load_record_float(in, type, field) constant_float(in, WORD_OFFSET(type, field))
+#define load_record_rgb(in, there, type, field) constant_rgb(in, WORD_OFFSET(type, field))
+#define load_record_float(in, there, type, field) constant_float(in, WORD_OFFSET(type, field))
+#define load_scaled_record_rgb(in, there, type, field) load_record_rgb(in, there, type, field)
+#define load_scaled_record_float(in, there, type, field) load_record_float(in, there, type, field)
 #endif
 
 #define load_flags(in) as_UInt(material_word(in, WORD_OFFSET(Material, flags)))

@@ -10,8 +10,8 @@
 
 #if HAS_BLENDS
 // The second material with the probability of its weight. The rest of the random number serves the next choice.
-INLINE UInt choose_of_blend(MaterialInput in, Float *u) {
-    Float weight = LESSER(GREATER(load_record_float(in, Nesting, weight), ZERO), ONE);
+INLINE UInt choose_of_blend(MaterialInput in, Int mine, Float *u) {
+    Float weight = LESSER(GREATER(load_record_float(in, mine, Nesting, weight), ZERO), ONE);
     Int second = *u < weight;
     // Below 1, which rounding may reach.
     *u = LESSER(SELECT(second, *u / weight, (*u - weight) / (1.0f - weight)), (Float)0x1.fffffep-1f);
@@ -32,8 +32,8 @@ INLINE UInt choose_of_sides(MaterialInput in, Int mine, Surface *s) {
 
 #if HAS_NORMAL_MAPS
 // The normal of a map in the frame of the tangent along u, of any length.
-INLINE Vec3 normal_of_map(MaterialInput in) {
-    Rgb color = load_record_rgb(in, Nesting, normal);
+INLINE Vec3 normal_of_map(MaterialInput in, Int mine) {
+    Rgb color = load_record_rgb(in, mine, Nesting, normal);
     Float along = nesting_word(in, scale);
     return vec3(along * madd(color.x, (Float)2.0f, (Float)-1.0f), along * madd(color.y, (Float)2.0f, (Float)-1.0f),
                 madd(color.z, (Float)2.0f, (Float)-1.0f));
@@ -42,9 +42,9 @@ INLINE Vec3 normal_of_map(MaterialInput in) {
 #if HAS_BUMP_MAPS
 // Blinn 1978, "Simulation of Wrinkled Surfaces": the normal of the surface raised by heights along its shading normal, on the
 // side of the geometric normal; in the given frame, of any length.
-INLINE Vec3 normal_of_heights(MaterialInput in, const Surface *s, Frame frame) {
+INLINE Vec3 normal_of_heights(MaterialInput in, Int mine, const Surface *s, Frame frame) {
     UInt texture = as_UInt(nesting_word(in, height));
-    Int textured = texture != (UInt)WAVELOBE_NONE;
+    Int textured = mine & (texture != (UInt)WAVELOBE_NONE);
     TextureBuffers b = {in.textures, in.texels};
     Float along_u, along_v;
     texture_gradient(b, SELECT(textured, texture, (UInt)0u), in.u, in.v, &along_u, &along_v);
@@ -122,7 +122,7 @@ INLINE void enter_nested_materials(Surface *s, global const struct Material *mat
         Int blend = IS_KIND(MATERIAL_BLEND);
         if (any_lane(blend)) {
             Float rest = u;
-            next = SELECT(blend, choose_of_blend(in, &rest), next);
+            next = SELECT(blend, choose_of_blend(in, blend, &rest), next);
             u = SELECT(blend, rest, u);
         }
 #endif
@@ -134,11 +134,11 @@ INLINE void enter_nested_materials(Surface *s, global const struct Material *mat
         Int mapped = IS_KIND(MATERIAL_NORMAL_MAP | MATERIAL_BUMP_MAP);
         s->maps[level].mapped = mapped;
         if (any_lane(mapped)) {
-            Vec3 n = normal_of_map(in), tangent = vec3(ONE, ZERO, ZERO);
+            Vec3 n = normal_of_map(in, mapped), tangent = vec3(ONE, ZERO, ZERO);
 #if HAS_BUMP_MAPS
             Int bump = IS_KIND(MATERIAL_BUMP_MAP);
             if (any_lane(bump)) {
-                n = select3(bump, normal_of_heights(in, s, frame), n);
+                n = select3(bump, normal_of_heights(in, bump, s, frame), n);
                 // Mitsuba 3 takes the world's coordinates of the tangent for the frame's, and so do its scenes' highlights.
                 tangent = select3(bump, s->dp_du, tangent);
             }

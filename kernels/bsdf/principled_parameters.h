@@ -7,7 +7,14 @@
 #include "bsdf/lobe.h"
 #include "bsdf/microfacet.h"
 
-#define load_principled_float(in, field) load_record_float(extension_of(in), PrincipledParameters, field)
+#if HAS_TEXTURES
+INLINE Int is_principled(MaterialInput in) {
+    const uint lobes = 1u << LOBE_PRINCIPLED | 1u << LOBE_PRINCIPLED_BASE | 1u << LOBE_PRINCIPLED_THIN | 1u << LOBE_PRINCIPLED_THIN_BASE;
+    return (as_UInt(load_constant(in, lobes)) & (UInt)lobes) != (UInt)0u;
+}
+#endif
+
+#define load_principled_float(in, field) load_record_float(extension_of(in), is_principled(in), PrincipledParameters, field)
 
 // (1 - cos)^5: Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
 INLINE Float principled_schlick_weight(Float cosine) {

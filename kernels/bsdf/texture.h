@@ -183,11 +183,12 @@ INLINE Float looked_up_float(MaterialInput in, UInt texture, Int textured) {
     return texture_float(b, i, in.u, in.v);
 }
 
-// Parameters of materials, textured or not; `offset` is that of the parameter in the record.
-INLINE Rgb parameter_rgb(MaterialInput in, uint offset, int scaled) {
+// Parameters, textured or not, in the lanes of `there`, whose record has them: what lies there of others names no texture.
+// `offset` is that of the parameter in the record.
+INLINE Rgb parameter_rgb(MaterialInput in, Int there, uint offset, int scaled) {
     Rgb value = constant_rgb(in, offset);
     UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedRgb, texture)));
-    Int textured = texture != (UInt)WAVELOBE_NONE;
+    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
     if (any_lane(textured)) {
         Rgb found = looked_up_rgb(in, texture, textured);
         value = select3(textured, scaled ? mul(value, found) : found, value);
@@ -195,10 +196,10 @@ INLINE Rgb parameter_rgb(MaterialInput in, uint offset, int scaled) {
     return value;
 }
 
-INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
+INLINE Float parameter_float(MaterialInput in, Int there, uint offset, int scaled) {
     Float value = constant_float(in, offset);
     UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedFloat, texture)));
-    Int textured = texture != (UInt)WAVELOBE_NONE;
+    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
     if (any_lane(textured)) {
         Float found = looked_up_float(in, texture, textured);
         value = SELECT(textured, scaled ? value * found : found, value);
@@ -206,31 +207,13 @@ INLINE Float parameter_float(MaterialInput in, uint offset, int scaled) {
     return value;
 }
 
-#define load_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 0)
-#define load_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 0)
-#define load_record_rgb(in, type, field) parameter_rgb(in, WORD_OFFSET(type, field), 0)
-#define load_record_float(in, type, field) parameter_float(in, WORD_OFFSET(type, field), 0)
-#define load_scaled_rgb(in, field) parameter_rgb(in, WORD_OFFSET(Material, field), 1)
-#define load_scaled_float(in, field) parameter_float(in, WORD_OFFSET(Material, field), 1)
-
-// Parameters of an extension, in the lanes whose material has it: what lies there of others names no texture.
-INLINE Rgb extension_rgb(MaterialInput in, Int there, uint offset) {
-    Rgb value = constant_rgb(in, offset);
-    UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedRgb, texture)));
-    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
-    if (any_lane(textured)) value = select3(textured, mul(value, looked_up_rgb(in, texture, textured)), value);
-    return value;
-}
-
-INLINE Float extension_float(MaterialInput in, Int there, uint offset) {
-    Float value = constant_float(in, offset);
-    UInt texture = as_UInt(material_word(in, offset + WORD_OFFSET(TexturedFloat, texture)));
-    Int textured = there & (texture != (UInt)WAVELOBE_NONE);
-    if (any_lane(textured)) value = SELECT(textured, value * looked_up_float(in, texture, textured), value);
-    return value;
-}
-
-#define load_extension_rgb(in, there, type, field) extension_rgb(in, there, WORD_OFFSET(type, field))
-#define load_extension_float(in, there, type, field) extension_float(in, there, WORD_OFFSET(type, field))
+#define load_rgb(in, field) parameter_rgb(in, TRUE_MASK, WORD_OFFSET(Material, field), 0)
+#define load_float(in, field) parameter_float(in, TRUE_MASK, WORD_OFFSET(Material, field), 0)
+#define load_scaled_rgb(in, field) parameter_rgb(in, TRUE_MASK, WORD_OFFSET(Material, field), 1)
+#define load_scaled_float(in, field) parameter_float(in, TRUE_MASK, WORD_OFFSET(Material, field), 1)
+#define load_record_rgb(in, there, type, field) parameter_rgb(in, there, WORD_OFFSET(type, field), 0)
+#define load_record_float(in, there, type, field) parameter_float(in, there, WORD_OFFSET(type, field), 0)
+#define load_scaled_record_rgb(in, there, type, field) parameter_rgb(in, there, WORD_OFFSET(type, field), 1)
+#define load_scaled_record_float(in, there, type, field) parameter_float(in, there, WORD_OFFSET(type, field), 1)
 
 #endif
