@@ -260,6 +260,9 @@ std::uint32_t MaterialFlattener::add(int material) {
 std::uint32_t MaterialFlattener::add(const Material* material) {
     if (material == nullptr) return WAVELOBE_NONE;
     if (const auto known = materials_.find(material); known != materials_.end()) return known->second;
+    // Before its extension and what it holds: lanes without a material read the first record, which must be one.
+    const auto index = static_cast<std::uint32_t>(out_.materials.size());
+    out_.materials.emplace_back();
     DeviceMaterial m{};
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
     for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent, &m.metallic}) parameter->texture = WAVELOBE_NONE;
@@ -286,8 +289,7 @@ std::uint32_t MaterialFlattener::add(const Material* material) {
     constexpr std::uint32_t smooth = (1U << LOBE_CLASS_GLOSSY) | (1U << LOBE_CLASS_DIFFUSE);
     f.mixture = f.mixture || ((m.flags & MATERIAL_NESTS) == 0 && (classes & smooth) == smooth);
     f.lobe_choice = f.lobe_choice || (classes & (classes - 1U)) != 0;
-    const auto index = static_cast<std::uint32_t>(out_.materials.size());
-    out_.materials.push_back(m);
+    out_.materials[index] = m;
     materials_.emplace(material, index);
     return index;
 }

@@ -105,4 +105,16 @@ INLINE Rgb fresnel_conductor_rgb(Float cos_i, Rgb eta, Rgb k) {
 
 INLINE Vec3 mirror_direction(Vec3 wi) { return vec3(-wi.x, -wi.y, wi.z); }
 
+// (1 - |cos|)^5: Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
+INLINE Float schlick_weight(Float cosine) {
+    Float x = GREATER(1.0f - fabs(cosine), ZERO);
+    Float square = x * x;
+    return square * square * x;
+}
+
+// Its complement for a cosine in [0, 1], without a difference of nearly equal numbers towards grazing incidence.
+INLINE Float schlick_rest(Float c) {
+    return c * madd(c, madd(c, madd(c, c - 5.0f, (Float)10.0f), (Float)-10.0f), (Float)5.0f);
+}
+
 #endif

@@ -22,7 +22,7 @@ typedef struct {
 INLINE LayerWeights layer_weights(Layered l, Float cosine) {
     LayerWeights w;
     w.coat = coat_reflectance(l, cosine);
-    w.surface = (1.0f - w.coat) * max_component(metallic_roughness_fresnel(l.material, cosine));
+    w.surface = coat_transmittance(l, cosine) * max_component(metallic_roughness_fresnel(l.material, cosine));
     w.through = l.transmission * base_share(l, cosine) * max_component(l.material.base);
     return w;
 }
@@ -45,7 +45,7 @@ INLINE LobeValue layered_metallic_roughness_eval(LayeredMetallicRoughnessLobe lo
     MicrofacetReflection surface = microfacet_reflection(l.microfacets, wi, wo);
     MicrofacetReflection coat = microfacet_reflection(l.coat_microfacets, wi, wo);
 
-    Rgb reflected = scale(metallic_roughness_fresnel(l.material, surface.cos_m), (1.0f - coat_reflectance(l, surface.cos_m)) * surface.value);
+    Rgb reflected = scale(metallic_roughness_fresnel(l.material, surface.cos_m), coat_transmittance(l, surface.cos_m) * surface.value);
     Float off_coat = coat_reflectance(l, surface.cos_m) * coat.value;
     Rgb passed = scale(l.material.base, l.transmission * base_share(l, surface.cos_m) * surface.value);
     Rgb value = select3(through, passed, vec3(reflected.x + off_coat, reflected.y + off_coat, reflected.z + off_coat));

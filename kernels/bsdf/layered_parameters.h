@@ -48,14 +48,18 @@ INLINE Layered load_layered(MaterialInput in) {
 // What the coat, of index 1.5, reflects where its microfacets meet the light at that cosine.
 INLINE Float coat_reflectance(Layered l, Float cosine) { return l.coat * madd((Float)0.96f, schlick_weight(cosine), (Float)0.04f); }
 
+// What the coat lets through: 1 - coat_reflectance.
+INLINE Float coat_transmittance(Layered l, Float cosine) {
+    return madd(0.96f * l.coat, schlick_rest(LESSER(fabs(cosine), ONE)), 1.0f - l.coat);
+}
+
 // Share of the light that reaches the base of the dielectric, by the cosine on the half vector; towards grazing incidence
 // without differences of nearly equal numbers.
 INLINE Float base_share(Layered l, Float cosine) {
     Float c = LESSER(fabs(cosine), ONE);
     Float weight = schlick_weight(c);
-    Float rest = c * madd(c, madd(c, madd(c, c - 5.0f, (Float)10.0f), (Float)-10.0f), (Float)5.0f); // 1 - weight
-    Float passed = madd(1.0f - max_component(l.material.f0), rest, (1.0f - l.material.f90) * weight);
-    return madd(0.96f * l.coat, rest, 1.0f - l.coat) * (1.0f - l.material.metallic) * passed;
+    Float passed = madd(1.0f - max_component(l.material.f0), schlick_rest(c), (1.0f - l.material.f90) * weight);
+    return coat_transmittance(l, cosine) * (1.0f - l.material.metallic) * passed;
 }
 
 // Seen from above: a two-sided surface is turned over where `wi` is below it.

@@ -26,13 +26,6 @@ INLINE MetallicRoughness load_metallic_roughness(MaterialInput in) {
     return m;
 }
 
-// (1 - |cos|)^5: Schlick 1994, "An Inexpensive BRDF Model for Physically-based Rendering".
-INLINE Float schlick_weight(Float cosine) {
-    Float x = GREATER(1.0f - fabs(cosine), ZERO);
-    Float square = x * x;
-    return square * square * x;
-}
-
 INLINE Rgb schlick_from(Rgb f0, Float f90, Float weight) {
     return vec3(madd(f90 - f0.x, weight, f0.x), madd(f90 - f0.y, weight, f0.y), madd(f90 - f0.z, weight, f0.z));
 }

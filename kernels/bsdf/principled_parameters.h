@@ -79,7 +79,7 @@ INLINE Rgb principled_diffuse(PrincipledDiffuse d, Vec3 wi, Vec3 wo, Float scatt
     // Flattened as if light went below the surface: Hanrahan, Krueger 1993, "Reflection from Layered Surfaces due to
     // Subsurface Scattering".
     Float grazing = 0.5f * retro;
-    Float below = mix_float(ONE, grazing, weight_o) * mix_float(ONE, grazing, weight_i);
+    Float below = madd(weight_o, grazing, schlick_rest(wo.z)) * madd(weight_i, grazing, schlick_rest(wi.z));
     Float flattened = 1.25f * madd(below, 1.0f / GREATER(wo.z + wi.z, (Float)1e-30f) - 0.5f, (Float)0.5f);
     Float f = scattering * mix_float(diffuse + reflected, flattened, d.flatness) * INV_PI;
     return scale(add(scale(d.base, f), scale(d.sheen, sheen * principled_schlick_weight(fabs(cos_d)))), wo.z);

@@ -252,12 +252,13 @@ INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
 }
 #endif
 
+// Hits at the limit itself do not count.
+INLINE float just_below(float limit) { return as_float(as_uint(limit) - 1u); }
+
 // 1 if anything of the subtree `current` is hit in (0, limit).
 INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
-    // Hits at the limit itself do not count.
-    float below = as_float(as_uint(r->limit) - 1u);
     uint stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u;
@@ -315,7 +316,7 @@ INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
         uint block = current & ~BVH_LEAF;
         global const uchar *triangles = g.blocks + (size_t)block * sizeof(struct TriangleBlock);
         float8 t, u, v;
-        uint mask = intersect_triangle_block(triangles, &shear, r, below, &t, &u, &v);
+        uint mask = intersect_triangle_block(triangles, &shear, r, just_below(r->limit), &t, &u, &v);
 #if HAS_MASKS
         if (UNLIKELY(mask)) mask = not_passed(g.opacity, triangles, mask, r, u, v);
 #endif

@@ -24,7 +24,7 @@ void expect_fault(const std::string& xml, const std::string& text) {
 TEST(Faults, AllOfAFileAtOnceWithTheirPlaces) {
     const SceneFolder folder;
     const auto faults = folder.element_faults(
-        "<bsdf type=\"principled\"/>\n"
+        "<bsdf type=\"hair\"/>\n"
         "  <shape type=\"sphere\">\n"
         "    <float name=\"radius\" value=\"wide\"/>\n"
         "    <float name=\"raduis\" value=\"1\"/>\n"

@@ -203,7 +203,7 @@ TEST(Opacity, FeaturesAreNamed) {
         return std::find(names.begin(), names.end(), name) != names.end();
     };
     EXPECT_FALSE(has("masks") || has("veiled_emitters"));
-    EXPECT_NE(scene_program(scene, {}).find("#define HAS_MASKS 0\n#define HAS_VEILED_EMITTERS 0\n#define HAS_OPACITY 0\n"), std::string::npos);
+    EXPECT_NE(scene_program(scene, {}).find("#define HAS_MASKS 0\n#define HAS_VEILED_EMITTERS 0\n#define HAS_MEDIA 0\n#define HAS_CLEAR_BOUNDARIES 0\n#define HAS_OPACITY 0\n"), std::string::npos);
     set_opacity(scene.shapes[0], 0.5F);
     EXPECT_TRUE(has("masks") && !has("veiled_emitters"));
     make_emitter(scene.shapes[0], {1, 1, 1});

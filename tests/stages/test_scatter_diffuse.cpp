@@ -114,7 +114,7 @@ TEST_P(ScatterDiffuse, PathsEndAtABlackBack) {
 TEST_P(ScatterDiffuse, WeighsTheLightSample) {
     Scene scene = wall_scene();
     const int black = add_diffuse(scene, Rgb{0});
-    make_emitter(add_quad(scene, {1, 1, 3}, {0, 1, 0}, {1, 0, 0}, black), intensity);  // shines towards -z
+    make_emitter(add_quad(scene, {1, 1, 3}, {0, 1, 0}, {1, 0.25F, 0}, black), intensity);  // shines towards -z
     StageBench bench(scene, GetParam());
     const std::vector<TestPath> paths = arriving(bench, from_front, 33);
     bench.fill(QUEUE_DIFFUSE, paths);
@@ -127,8 +127,9 @@ TEST_P(ScatterDiffuse, WeighsTheLightSample) {
         const glm::dvec3 end = position + direction * distance;
         EXPECT_GE(end.x, 1.0 - 1e-5);
         EXPECT_LE(end.x, 2.0 + 1e-5);
-        EXPECT_GE(end.y, 1.0 - 1e-5);
-        EXPECT_LE(end.y, 2.0 + 1e-5);
+        const double edge = 1.0 + 0.25 * (end.x - 1.0);
+        EXPECT_GE(end.y, edge - 1e-5);
+        EXPECT_LE(end.y, edge + 1.0 + 1e-5);
         EXPECT_LT(s.t, distance) << "the light itself would be in the way";
         // Both ends are moved by 7 roundings of coordinates up to 3, and the reach is 32 of the distance shorter.
         EXPECT_GT(s.t, distance - (2 * 7 * 3 + 32 * distance) * 0x1p-24 - distance * stage_rounding);

@@ -16,7 +16,7 @@ const Rgb second_radiance{0.25F, 4.0F, 8.0F};
 Scene two_lights() {
     Scene scene = empty_scene(16);
     const int black = add_diffuse(scene, Rgb{0});
-    make_emitter(add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 3, 0}, black), first_radiance);
+    make_emitter(add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0.5F, 3, 0}, black), first_radiance);
     TriangleMesh mesh;
     mesh.positions = {{5, 0, -1}, {6, 0, -1}, {5, 1, -1}, {7, 0, -1}, {9, 0, -1}, {7, 2, -1}};
     mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
