@@ -191,14 +191,16 @@ void MaterialFlattener::nest(DeviceNesting& out, std::uint32_t kind, const Neste
     out.flags = kind;
     out.inner[0] = add(first.get());
     out.inner[1] = add(second.get());
+    for (const std::uint32_t inner : out.inner) out.lobes |= lobes(inner);
+}
+
+int MaterialFlattener::levels_of(const DeviceNesting& nesting) const {
     int levels = 0;
-    for (const std::uint32_t inner : out.inner) {
-        out.lobes |= lobes(inner);
+    for (const std::uint32_t inner : nesting.inner) {
         const auto known = levels_.find(inner);
         if (known != levels_.end()) levels = std::max(levels, known->second);
     }
-    levels_[static_cast<std::uint32_t>(out_.materials.size())] = levels + 1;
-    out_.features.material_levels = std::max(out_.features.material_levels, levels + 1);
+    return levels + 1;
 }
 
 void MaterialFlattener::fill(DeviceNesting& out, const NormalMapped& m) {
@@ -267,11 +269,13 @@ std::uint32_t MaterialFlattener::add(const Material* material) {
     for (TexturedRgb* parameter : {&m.diffuse, &m.specular, &m.transmission}) parameter->texture = WAVELOBE_NONE;
     for (TexturedFloat* parameter : {&m.alpha_u, &m.alpha_v, &m.exponent, &m.metallic}) parameter->texture = WAVELOBE_NONE;
     std::visit(
-        [this, &m](const auto& model) {
+        [this, &m, index](const auto& model) {
             if constexpr (holds_others<std::decay_t<decltype(model)>>) {
                 DeviceNesting nesting{};
                 nesting.normal.texture = nesting.weight.texture = nesting.height = WAVELOBE_NONE;
                 fill(nesting, model);
+                levels_[index] = levels_of(nesting);
+                out_.features.material_levels = std::max(out_.features.material_levels, levels_[index]);
                 std::memcpy(static_cast<void*>(&m), &nesting, sizeof(nesting));
             } else {
                 fill(m, model);

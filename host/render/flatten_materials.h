@@ -46,6 +46,7 @@ private:
     void fill(DeviceNesting& out, const TwoSided& m);
     void fill(DeviceNesting& out, const Blend& m);
     void nest(DeviceNesting& out, std::uint32_t kind, const NestedMaterial& first, const NestedMaterial& second);
+    int levels_of(const DeviceNesting& nesting) const;
     // What all dielectrics share.
     template <class Model>
     void fill_interface(DeviceMaterial& out, const Model& m);

@@ -82,7 +82,9 @@ INLINE Rgb principled_diffuse(PrincipledDiffuse d, Vec3 wi, Vec3 wo, Float scatt
     Float below = madd(weight_o, grazing, schlick_rest(wo.z)) * madd(weight_i, grazing, schlick_rest(wi.z));
     Float flattened = 1.25f * madd(below, 1.0f / GREATER(wo.z + wi.z, (Float)1e-30f) - 0.5f, (Float)0.5f);
     Float f = scattering * mix_float(diffuse + reflected, flattened, d.flatness) * INV_PI;
-    return scale(add(scale(d.base, f), scale(d.sheen, sheen * principled_schlick_weight(fabs(cos_d)))), wo.z);
+    // 1 - cos_d, from the difference of the directions: no digits are lost where they are close.
+    Float x = 0.25f * length_squared(sub(wi, wo)) / (1.0f + cos_d);
+    return scale(add(scale(d.base, f), scale(d.sheen, sheen * x * x * x * x * x)), wo.z);
 }
 
 #endif
