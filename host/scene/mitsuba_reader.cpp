@@ -51,6 +51,9 @@ void read_scene_object(Context& context, const Object& root) {
         if (std::find(ignored_settings.begin(), ignored_settings.end(), property.name) == ignored_settings.end())
             context.faults.add(property.place, root.label(), "unknown property `" + property.name + "`",
                                "remove it");
+    for (const Object& object : context.document.objects)
+        if (object.tag == "shape")
+            for (const Child& child : object.children) context.held_by_shapes.insert(child.object);
     for (const Child& child : root.children)
         if (child.object != nullptr && child.object->tag == "integrator" && sees_media(*child.object)) context.absorbs_media = true;
     for (const Child& child : root.children)

@@ -51,6 +51,20 @@ TEST(LegacyScenes, WholeScene) {
     EXPECT_FALSE(scene.warnings.empty());
 }
 
+TEST(LegacyScenes, ChoicesThatAreNoMore) {
+    const SceneFolder folder;
+    folder.write("a.ppm", "P3 1 1 255 255 0 0");
+    const Scene scene = folder.read(old(R"(<shape type="rectangle"><bsdf type="roughconductor">
+        <string name="distribution" value="phong"/><rgb name="eta" value="-0.05, 4, 5"/>
+        <texture name="specularReflectance" type="bitmap"><string name="filename" value="a.ppm"/>
+            <string name="filterType" value="trilinear"/></texture></bsdf></shape>)"));
+    const auto& metal = std::get<RoughConductor>(scene.materials.at(0).model);
+    EXPECT_EQ(metal.distribution, Distribution::beckmann);
+    EXPECT_EQ(metal.eta, Rgb(0.0F, 4.0F, 5.0F));
+    EXPECT_EQ(std::get<Bitmap>(metal.specular_reflectance.texture->source).filter, Filter::bilinear);
+    EXPECT_EQ(scene.warnings.size(), 2U);
+}
+
 TEST(LegacyScenes, PlacementOfTextures) {
     const Scene scene = SceneFolder().read(old(R"(<shape type="rectangle"><bsdf type="diffuse">
         <texture name="reflectance" type="checkerboard">

@@ -219,6 +219,24 @@ TEST(MitsubaReader, AreaEmitterBelongsToItsShape) {
     EXPECT_EQ(std::get<Diffuse>(scene.materials.at(0).model).reflectance.value, Rgb(0.0F));
 }
 
+TEST(MitsubaReader, ShapesShareAnAreaEmitterThatStandsBesideThem) {
+    const SceneFolder folder;
+    const std::string lamp = R"(<emitter type="area" id="lamp"><rgb name="radiance" value="3, 2, 1"/></emitter>)";
+    const std::string shape = R"(<shape type="rectangle"><ref id="lamp"/></shape>)";
+    const Scene scene = folder.elements(lamp + shape + shape);
+    EXPECT_EQ(scene.shapes.at(1).emitter.value().radiance.value, Rgb(3, 2, 1));
+    EXPECT_TRUE(has_text(folder.element_faults(lamp), "an area light needs a shape"));
+}
+
+TEST(MitsubaReader, IntegratorsToDifferentiateArePaths) {
+    const SceneFolder folder;
+    EXPECT_EQ(folder.elements(R"(<integrator type="prb"/>)").integrator.max_depth, 6);
+    EXPECT_EQ(folder.elements(R"(<integrator type="direct_projective"><integer name="sppc" value="1"/></integrator>)").integrator.max_depth, 2);
+    const Scene particles = folder.elements(R"(<integrator type="ptracer"><integer name="max_depth" value="7"/></integrator>)");
+    EXPECT_EQ(particles.integrator.max_depth, 7);
+    EXPECT_EQ(particles.warnings.size(), 1U);
+}
+
 TEST(MitsubaReader, VolpathIsPathWithoutMedia) {
     const SceneFolder folder;
     EXPECT_EQ(folder.elements(R"(<integrator type="volpath"><integer name="max_depth" value="65"/></integrator>)")

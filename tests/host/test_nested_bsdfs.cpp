@@ -34,6 +34,10 @@ TEST(NestedBsdfs, NormalMapShowsOnBothSides) {
         "normalmap", up + diffuse +
                          R"(<boolean name="flip_invalid_normals" value="false"/><boolean name="use_shadowing_function" value="false"/>)")));
     EXPECT_FALSE(plain.perturbation.flip_invalid || plain.perturbation.soften_terminator);
+    const auto raw = model_of<NormalMapped>(with_bsdf(bsdf(
+        "normalmap", R"(<texture type="rawconstant" name="normalmap"><vector name="value" x="-0.5" y="0.5" z="2"/></texture>)" + diffuse)));
+    EXPECT_EQ(raw.normals.value, Rgb(-0.5F, 0.5F, 2.0F));
+    EXPECT_TRUE(has_text(faults(bsdf("normalmap", R"(<texture type="rawconstant" name="normalmap"/>)" + diffuse)), "`value` is missing"));
 }
 
 TEST(NestedBsdfs, SidesKeepTheirPlace) {

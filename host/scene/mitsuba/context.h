@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Context {
     std::map<const Object*, int> groups;
     std::map<const Object*, int> media;
     std::shared_ptr<const Material> default_material, black_material;
+
+    std::set<const Object*> held_by_shapes;  // among them area emitters that stand beside the shapes they shine from
 
     int bsdf_levels = 0;  // of nested ones that are being read
     bool absorbs_media = false;  // the integrator sees media

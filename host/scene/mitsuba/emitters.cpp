@@ -144,8 +144,10 @@ void read_emitter(Context& context, const Object& object) {
     const auto* plugin = find_emitter(context, object);
     if (plugin == nullptr) return;
     Query query(context, object);
-    if (plugin->read == nullptr)
+    if (plugin->read == nullptr) {
+        if (context.held_by_shapes.contains(&object)) return;
         return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
+    }
     std::optional<Emitter> emitter = plugin->read(query);
     accept_sampling_weight(query);
     read_surrounding_medium(query);  // paths start at the camera

@@ -22,6 +22,27 @@ Integrator read_path(Query& query) {
     return integrator;
 }
 
+// Written to be differentiated; their pictures are those of `path`, with another limit where none is given.
+Integrator read_replayed(Query& query) {
+    Integrator integrator;
+    integrator.max_depth = static_cast<int>(query.integer("max_depth", 6, -1, int_max));
+    integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 5, 1, int_max));
+    query.accept({"guiding", "guiding_proj", "guiding_rounds", "project_seed", "sppc", "sppi", "sppp"});
+    return integrator;
+}
+
+Integrator read_direct_projective(Query& query) {
+    Integrator integrator = read_replayed(query);
+    integrator.max_depth = 2;
+    return integrator;
+}
+
+// Light finds the same ways from the emitters to the camera as from the camera to them.
+Integrator read_particle_tracer(Query& query) {
+    query.warn("replaced by `path`, which computes the same light");
+    return read_path(query);
+}
+
 Integrator read_volpathmis(Query& query) {
     query.boolean("use_spectral_mis", true);
     return read_path(query);
@@ -161,11 +182,17 @@ struct Plugin {
     bool holds_another;
 };
 // Without media `volpath` computes what `path` does.
-constexpr std::array<Plugin, 6> plugins{{
+constexpr std::array<Plugin, 12> plugins{{
     {"aov", read_aov, true},
     {"direct", read_direct, false},
+    {"direct_projective", read_direct_projective, false},
     {"moment", read_moment, true},
     {"path", read_path, false},
+    {"prb", read_replayed, false},
+    {"prb_basic", read_replayed, false},
+    {"prb_projective", read_replayed, false},
+    {"prbvolpath", read_replayed, false},
+    {"ptracer", read_particle_tracer, false},
     {"volpath", read_path, false},
     {"volpathmis", read_volpathmis, false},
 }};
@@ -193,7 +220,7 @@ void read_integrator(Context& context, const Object& object) {
 }
 
 bool sees_media(const Object& integrator) {
-    return integrator.type.starts_with("volpath") ||
+    return integrator.type.starts_with("volpath") || integrator.type == "prbvolpath" ||
            std::ranges::any_of(integrator.children, [](const Child& c) { return c.object != nullptr && sees_media(*c.object); });
 }
 

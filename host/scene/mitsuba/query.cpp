@@ -118,6 +118,12 @@ glm::dvec3 Query::triple(const std::string& name, const glm::dvec3& otherwise) {
     return otherwise;
 }
 
+glm::dvec3 Query::triple_or_real(const std::string& name) {
+    const Property* property = find(name);
+    if (property != nullptr && std::holds_alternative<glm::dvec3>(property->value)) return triple(name, glm::dvec3(0.0));
+    return glm::dvec3(real(name, 0.0));
+}
+
 glm::dmat4 Query::transform(const std::string& name) {
     const Property* property = find(name);
     if (property == nullptr) return glm::dmat4(1.0);
@@ -167,6 +173,10 @@ std::optional<Rgb> Query::colour_value(const Property& property, ColourUse use) 
     if (bounded && above_one && !negative && object_.legacy) {
         warn(fmt::format("`{}` is above 1 and taken as 1", property.name));
         return Rgb(glm::min(rgb, glm::dvec3(1.0)));
+    }
+    if (negative && object_.legacy && use == ColourUse::unbounded) {
+        warn(fmt::format("components of `{}` below 0 are taken as 0", property.name));
+        return Rgb(glm::max(rgb, glm::dvec3(0.0)));
     }
     if (negative || (bounded && above_one)) {
         context_.faults.add(

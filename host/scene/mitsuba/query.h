@@ -31,6 +31,8 @@ public:
     bool boolean(const std::string& name, bool otherwise);
     std::string text(const std::string& name, const std::string& otherwise);
     glm::dvec3 triple(const std::string& name, const glm::dvec3& otherwise);
+    // One number stands for three.
+    glm::dvec3 triple_or_real(const std::string& name);
     glm::dmat4 transform(const std::string& name);
     // The index of one of the choices; case does not matter.
     std::size_t choice(const std::string& name, const std::vector<std::string>& choices, std::size_t otherwise);

@@ -39,6 +39,12 @@ Rgb read_uniform(Query& query, ColourUse) {
     return Rgb(static_cast<float>(query.real("value", 1.0, not_negative)));
 }
 
+// Three numbers of any meaning, such as a normal, or one.
+Rgb read_raw_constant(Query& query, ColourUse) {
+    if (!query.has("value")) query.fault("the property `value` is missing", "give it as <float> or <vector>");
+    return Rgb(query.triple_or_real("value"));
+}
+
 Rgb read_srgb(Query& query, ColourUse use) {
     query.boolean("unbounded", false);
     return query.colour("color", 0.0, use);
@@ -79,10 +85,11 @@ struct Plugin {
     const char* name;
     Rgb (*read)(Query&, ColourUse);
 };
-constexpr std::array<Plugin, 7> plugins{{
+constexpr std::array<Plugin, 8> plugins{{
     {"blackbody", read_blackbody},
     {"d65", read_d65},
     {"irregular", read_irregular},
+    {"rawconstant", read_raw_constant},
     {"regular", read_regular},
     {"rgb", read_srgb},
     {"srgb", read_srgb},

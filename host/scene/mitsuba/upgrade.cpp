@@ -120,6 +120,27 @@ void upgrade_type(Object& object, std::vector<Fault>& warnings) {
     }
 }
 
+// Names of choices that Mitsuba 3 no longer has.
+void upgrade_choices(Object& object, std::vector<Fault>& warnings) {
+    const auto replace = [&](const char* name, const char* from, const char* to, const char* said) {
+        Property* property = find(object, name);
+        const auto* text = property == nullptr ? nullptr : std::get_if<std::string>(&property->value);
+        if (text == nullptr || *text != from) return;
+        property->value = std::string(to);
+        if (*said != '\0')
+            warnings.push_back(
+                Fault{*property->place.file, property->place.line, property->place.column, object.label(), said, ""});
+    };
+    if (object.tag == "texture") {
+        replace("filter_type", "ewa", "bilinear", "");  // paths average where texels are smaller than pixels
+        replace("filter_type", "trilinear", "bilinear", "");
+    }
+    if (object.tag == "bsdf") {
+        replace("distribution", "phong", "beckmann", "the distribution `phong` is approximated by `beckmann`, of the same `alpha`");
+        replace("distribution", "as", "beckmann", "the distribution `as` is approximated by `beckmann`, of the same `alpha`");
+    }
+}
+
 // Mitsuba 0.x normalized the axis.
 void upgrade_rotation(Element& element) {
     glm::dvec3 axis(0.0);
@@ -176,6 +197,7 @@ void upgrade_element(Element& element) {
 void upgrade_object(Object& object, std::vector<Fault>& warnings) {
     object.legacy = true;
     upgrade_type(object, warnings);
+    upgrade_choices(object, warnings);
     if (object.type == "diffuse") rename(object, "diffuse_reflectance", "reflectance");
     if (object.tag == "texture") upgrade_texture_placement(object);
     // Where 0.x wrote its pictures, and how, is no part of a scene here.
