@@ -22,6 +22,21 @@ bool has_area(const TriangleMesh& mesh, const glm::uvec3& triangle) {
     return glm::dot(normal, normal) > 0.0;
 }
 
+// Along with the values of their faces; how many.
+std::size_t drop_empty_triangles(TriangleMesh& mesh, std::vector<MeshAttribute>& attributes) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (!has_area(mesh, mesh.triangles[i])) continue;
+        mesh.triangles[kept] = mesh.triangles[i];
+        for (MeshAttribute& attribute : attributes)
+            if (attribute.of_faces) attribute.values[kept] = attribute.values[i];
+        ++kept;
+    }
+    const std::size_t dropped = mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
+    return dropped;
+}
+
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
@@ -80,10 +95,8 @@ PreparedMesh prepare_mesh(MeshSource&& source, const MeshOptions& options) {
     const bool mirrored = glm::determinant(glm::dmat3(options.to_world)) < 0.0;
     if ((mirrored && keeps_normals) != options.flip_normals)
         for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.x, triangle.z);
-    const auto kept = std::remove_if(mesh.triangles.begin(), mesh.triangles.end(),
-                                     [&](const glm::uvec3& triangle) { return !has_area(mesh, triangle); });
-    prepared.dropped = static_cast<std::size_t>(mesh.triangles.end() - kept);
-    mesh.triangles.erase(kept, mesh.triangles.end());
+    prepared.attributes = std::move(source.attributes);
+    prepared.dropped = drop_empty_triangles(mesh, prepared.attributes);
 
     if (options.face_normals || mesh.triangles.empty()) return prepared;
     if (keeps_normals) {

@@ -15,16 +15,26 @@ struct MeshOptions {
     bool flip_normals = false;  // turn the surface inside out
 };
 
+// Values of a mesh beside its positions, normals and texture coordinates.
+struct MeshAttribute {
+    std::string name;  // such as `vertex_color`
+    int channels = 3;  // 1: all three are the same
+    bool of_faces = false;
+    std::vector<glm::vec3> values;  // one a vertex, or one a triangle
+};
+
 // A mesh in the space of its file.
 struct MeshSource {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  // empty, or one a vertex: zero where there is none
     std::vector<glm::vec2> uvs;      // empty, or one a vertex
     std::vector<glm::uvec3> triangles;
+    std::vector<MeshAttribute> attributes;
 };
 
 struct PreparedMesh {
     TriangleMesh mesh;
+    std::vector<MeshAttribute> attributes;
     std::size_t dropped = 0;  // triangles without area or with positions that are not finite
 };
 
@@ -36,7 +46,8 @@ PreparedMesh prepare_mesh(MeshSource&& source, const MeshOptions& options);
 
 // Throw InputError naming the file, and the line where that is known.
 MeshSource load_obj(const std::string& path, bool flip_tex_coords);
-MeshSource load_ply(const std::string& path, bool flip_tex_coords);
+// The attributes of these names, where the file has them.
+MeshSource load_ply(const std::string& path, bool flip_tex_coords, const std::vector<std::string>& attributes = {});
 // Mesh `index` of a file of Mitsuba's own.
 MeshSource load_serialized(const std::string& path, std::uint32_t index);
 

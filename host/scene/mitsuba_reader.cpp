@@ -74,6 +74,7 @@ Scene read_mitsuba_scene(const std::string& path, const Definitions& definitions
     if (document->root != nullptr) {
         Context context(*document, scene, faults);
         read_scene_object(context, *document->root);
+        context.mesh_attributes.finish();
     }
     if (!faults.empty()) throw InputError(std::move(faults.list()));
     return scene;

@@ -19,7 +19,7 @@ struct Property {
     Type type = Type::float32;
     bool list = false;
     Type count_type = Type::uint8;
-    int target = -1;  // for vertices: position, normal and texture coordinates, 0 to 7
+    std::vector<int> targets;  // what it is read for: position, normal and texture coordinates, 0 to 7, and attributes behind them
 };
 
 struct Element {

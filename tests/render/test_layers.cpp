@@ -77,7 +77,9 @@ TEST(Layers, OfAWallThatFillsThePicture) {
         EXPECT_NEAR(at(K::duv_dx, 1, i), 0.0, 1e-5);
         EXPECT_NEAR(at(K::duv_dy, 0, i), 0.0, 1e-5);
         EXPECT_NEAR(at(K::duv_dy, 1, i), -1.0 / 32 / 8, 1e-5);
-        if (std::abs(x + y) > 0.3) EXPECT_EQ(at(K::prim_index, 0, i), -x > y ? 0.0 : 1.0);
+        if (std::abs(x + y) > 0.3) {
+            EXPECT_EQ(at(K::prim_index, 0, i), -x > y ? 0.0 : 1.0);
+        }
         EXPECT_EQ(at(K::shape_index, 0, i), 1.0);
     }
 }

@@ -1,6 +1,7 @@
 // The BSDF plugins.
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "scene/conductors.h"
 #include "scene/mitsuba/nested_bsdfs.h"
@@ -210,8 +211,12 @@ constexpr std::array<Plugin, 18> plugins{{
 
 Bsdf read_bsdf(Context& context, const Object& object) {
     const auto known = context.bsdfs.find(&object);
-    if (known != context.bsdfs.end()) return known->second;
+    if (known != context.bsdfs.end()) {
+        context.attributes.insert(known->second.attributes.begin(), known->second.attributes.end());
+        return known->second;
+    }
     Bsdf bsdf;
+    std::set<AttributeUse> outer = std::exchange(context.attributes, {});
     constexpr int most_levels = 16;
     if (context.bsdf_levels == most_levels) {
         context.faults.add(object.place, object.label(),
@@ -223,6 +228,8 @@ Bsdf read_bsdf(Context& context, const Object& object) {
         --context.bsdf_levels;
         query.finish();
     }
+    bsdf.attributes = context.attributes;
+    context.attributes.merge(outer);
     return context.bsdfs[&object] = bsdf;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/mitsuba/document.h"
+#include "scene/mitsuba/mesh_attributes.h"
 #include "scene/scene.h"
 
 namespace wavelobe::mitsuba {
@@ -20,6 +21,7 @@ struct Bsdf {
     bool transmissive = false;
     Opacity opacity{};
     bool turned = false;  // opaque on both sides: seen from behind it is turned over
+    std::set<AttributeUse> attributes{};  // that the shape must have
 };
 
 struct Context {
@@ -36,6 +38,9 @@ struct Context {
     std::map<const Object*, std::shared_ptr<const Texture>> scalar_textures;
     std::map<std::string, std::shared_ptr<const Texture>> bitmaps;  // by file and options
     std::map<const Material*, int> material_indices;
+    std::map<const Texture*, AttributeUse> attribute_textures;
+    std::set<AttributeUse> attributes;  // that the object asks for which is being read, so far
+    MeshAttributes mesh_attributes;
     std::map<const Object*, int> groups;
     std::map<const Object*, int> media;
     std::shared_ptr<const Material> default_material, black_material;

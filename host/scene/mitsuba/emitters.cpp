@@ -144,6 +144,7 @@ void read_emitter(Context& context, const Object& object) {
     const auto* plugin = find_emitter(context, object);
     if (plugin == nullptr) return;
     Query query(context, object);
+    context.attributes.clear();
     if (plugin->read == nullptr) {
         if (context.held_by_shapes.contains(&object)) return;
         return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
@@ -152,6 +153,7 @@ void read_emitter(Context& context, const Object& object) {
     accept_sampling_weight(query);
     read_surrounding_medium(query);  // paths start at the camera
     query.finish();
+    if (!context.attributes.empty()) query.fault("attributes are of meshes, and it has none", "use another texture");
     if (emitter) context.scene.emitters.push_back(std::move(*emitter));
 }
 

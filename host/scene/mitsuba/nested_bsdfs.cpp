@@ -51,7 +51,8 @@ NormalPerturbation perturbation(Query& query) {
 Bsdf around(const Bsdf& nested, NestedMaterial material) { return {material, material, nested.transmissive, nested.opacity}; }
 
 // 1 minus a texture of one channel.
-std::shared_ptr<const Texture> inverted(const Texture& texture) {
+std::shared_ptr<const Texture> inverted(Query& query, const Texture& texture) {
+    if (auto attribute = query.context().mesh_attributes.inverted(texture)) return attribute;
     auto out = std::make_shared<Texture>(texture);
     if (auto* board = std::get_if<Checkerboard>(&out->source)) {
         *board = {Rgb(1.0F) - board->color0, Rgb(1.0F) - board->color1};
@@ -87,6 +88,8 @@ Bsdf read_bump_map(Query& query) {
     }
     map.height = read_texture(query.context(), *textures.front()->object, TextureUse::scalar);
     if (nested.empty() || map.height == nullptr) return {};
+    if (query.context().attribute_textures.contains(map.height.get()))
+        query.fault("attributes of meshes have no slope", "nest a bitmap");
     if (!std::holds_alternative<Bitmap>(map.height->source)) query.warn("the texture is of no slope, the surface stays flat");
     map.nested = inside(query, nested.front());
     return around(nested.front(), named(query, map));
@@ -134,7 +137,7 @@ Bsdf read_blend(Query& query) {
         opacity.value = blend.weight;
         blend.weight = Parameter{Rgb(1.0F), nullptr};
     } else if (varies && there == 1.0F && second_there == 0.0F) {
-        opacity.value = {Rgb(0.0F), inverted(*blend.weight.texture)};
+        opacity.value = {Rgb(0.0F), inverted(query, *blend.weight.texture)};
         blend.weight = Parameter{Rgb(0.0F), nullptr};
     } else if (!varies && there >= 0.0F && second_there >= 0.0F) {
         const float of_second = weight * second_there;

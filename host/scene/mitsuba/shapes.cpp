@@ -16,6 +16,8 @@ namespace {
 
 using Kind = AnalyticShape::Kind;
 
+constexpr const char* attribute_naming = "`vertex_color` is made of `red`, `green` and `blue`, `vertex_a` of `a_x`, `a_y` and `a_z`";
+
 MeshOptions mesh_options(Query& query) {
     MeshOptions options;
     options.to_world = query.transform("to_world");
@@ -73,6 +75,22 @@ bool read_cube(Query& query, Shape& shape) {
     return true;
 }
 
+// Gives the mesh the attributes that what it shows asks for.
+void place_attributes(Query& query, PreparedMesh& prepared) {
+    Context& context = query.context();
+    if (context.attributes.empty()) return;
+    for (const AttributeUse& use : context.attributes) {
+        const auto found = std::find_if(prepared.attributes.begin(), prepared.attributes.end(),
+                                        [&](const MeshAttribute& attribute) { return attribute.name == use.name; });
+        if (found == prepared.attributes.end())
+            query.fault("the mesh has no attribute `" + use.name + "`, which its BSDF or emitter asks for",
+                        "use a PLY file that has it; " + std::string(attribute_naming));
+        else if (use.scalar && found->channels != 1)
+            query.fault("the attribute `" + use.name + "` is a colour where one number is asked for", "use an attribute of one channel");
+    }
+    context.mesh_attributes.add_mesh(prepared.mesh, prepared.attributes);
+}
+
 bool read_mesh_file(Query& query, Shape& shape, const std::function<MeshSource(const std::string&)>& load) {
     const std::string path = query.file("filename");
     const MeshOptions options = mesh_options(query);
@@ -86,6 +104,7 @@ bool read_mesh_file(Query& query, Shape& shape, const std::function<MeshSource(c
             query.warn("the shape has no triangles and is left out");
             return false;
         }
+        place_attributes(query, prepared);
         shape.geometry = std::move(prepared.mesh);
         return true;
     } catch (const InputError& error) {
@@ -101,7 +120,10 @@ bool read_obj(Query& query, Shape& shape) {
 
 bool read_ply(Query& query, Shape& shape) {
     const bool flip = query.boolean("flip_tex_coords", false);
-    return read_mesh_file(query, shape, [flip](const std::string& path) { return load_ply(path, flip); });
+    std::vector<std::string> attributes;
+    for (const AttributeUse& use : query.context().attributes)
+        if (attributes.empty() || attributes.back() != use.name) attributes.push_back(use.name);
+    return read_mesh_file(query, shape, [&](const std::string& path) { return load_ply(path, flip, attributes); });
 }
 
 bool read_serialized(Query& query, Shape& shape) {
@@ -160,16 +182,17 @@ struct Plugin {
     const char* name;
     // Fills in the geometry; false for a shape that does not enter the scene.
     bool (*read)(Query&, Shape&);
+    bool from_file = false;
 };
 constexpr std::array<Plugin, 10> plugins{{
     {"cube", read_cube},
     {"cylinder", read_cylinder},
     {"disk", read_disk},
     {"instance", nullptr},  // instances.cpp
-    {"obj", read_obj},
-    {"ply", read_ply},
+    {"obj", read_obj, true},
+    {"ply", read_ply, true},
     {"rectangle", read_rectangle},
-    {"serialized", read_serialized},
+    {"serialized", read_serialized, true},
     {"shapegroup", nullptr},
     {"sphere", read_sphere},
 }};
@@ -197,12 +220,16 @@ std::optional<Shape> build_shape(Context& context, const Object& object) {
     Query query(context, object);
     Shape shape;
     shape.name = object.id;
-    const bool usable = plugin->read(query, shape);
+    // What it shows says which attributes its mesh must have.
+    context.attributes.clear();
     const Object* emitter = only_child(query, "emitter");
     const Object* bsdf_object = only_child(query, "bsdf");
     if (emitter != nullptr) shape.emitter = read_area_emitter(context, *emitter);
     const Bsdf bsdf =
         bsdf_object != nullptr ? read_bsdf(context, *bsdf_object) : default_bsdf(context, emitter != nullptr);
+    const bool usable = plugin->read(query, shape);
+    if (!context.attributes.empty() && !plugin->from_file)
+        query.fault("the shape has no attribute `" + context.attributes.begin()->name + "`, which its BSDF or emitter asks for", "use a PLY file that has it");
     shape.media = read_boundary(query);
     if (shape.media && (bsdf.opacity.value.texture || (bsdf.opacity.value.value.r > 0.0F && bsdf.opacity.value.value.r < 1.0F)))
         query.fault("a mask cannot bound a medium", "use a BSDF that is all there, or `null`");

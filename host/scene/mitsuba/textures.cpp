@@ -67,21 +67,42 @@ Result read_checkerboard(Query& query, TextureUse use) {
     return std::make_shared<Texture>(Texture{board, to_uv, query.object().id});
 }
 
+Result read_mesh_attribute(Query& query, TextureUse use) {
+    const std::string name = query.text("name", "");
+    const auto scale = static_cast<float>(query.real("scale", 1.0));
+    if (!name.starts_with("vertex_") && !name.starts_with("face_")) {
+        query.fault_at("name", "`name` is `" + name + "`; expected that of an attribute of the shape's mesh, such as `vertex_color` or `face_color`", "");
+        return nullptr;
+    }
+    Context& context = query.context();
+    const Result texture = context.mesh_attributes.add_texture(name, scale, query.object().id);
+    context.attribute_textures[texture.get()] = {name, use == TextureUse::scalar};
+    return texture;
+}
+
 struct Plugin {
     const char* name;
     Result (*read)(Query&, TextureUse);
 };
-constexpr std::array<Plugin, 2> plugins{{
+constexpr std::array<Plugin, 3> plugins{{
     {"bitmap", read_bitmap},
     {"checkerboard", read_checkerboard},
+    {"mesh_attribute", read_mesh_attribute},
 }};
+
+// Whoever uses the texture asks for its attribute.
+Result used(Context& context, const Result& texture) {
+    const auto attribute = context.attribute_textures.find(texture.get());
+    if (attribute != context.attribute_textures.end()) context.attributes.insert(attribute->second);
+    return texture;
+}
 
 }  // namespace
 
 Result read_texture(Context& context, const Object& object, TextureUse use) {
     auto& known = use == TextureUse::colour ? context.textures : context.scalar_textures;
     const auto [entry, fresh] = known.try_emplace(&object);
-    if (!fresh) return entry->second;
+    if (!fresh) return used(context, entry->second);
     if (object.tag != "texture" && object.tag != "spectrum") {
         context.faults.add(object.place, object.label(), "a " + object.tag + " cannot take the place of a colour",
                            "nest a <texture> or give the value as <rgb>");
@@ -95,7 +116,7 @@ Result read_texture(Context& context, const Object& object, TextureUse use) {
     Query query(context, object);
     entry->second = plugin->read(query, use);
     query.finish();
-    return entry->second;
+    return used(context, entry->second);
 }
 
 std::vector<std::string> texture_types() { return names_of(plugins); }
