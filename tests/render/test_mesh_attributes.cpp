@@ -83,7 +83,7 @@ TEST(MeshAttributes, EmissionIsInterpolated) {
     const SceneFolder folder;
     folder.write("m.ply", square(columns({"r", "g", "b"}), ramps));
     const Scene scene = folder.read(seen(plate("<emitter type=\"area\">" + attribute("radiance", "vertex_color", 3.0) + "</emitter>")));
-    expect_ramps(render(scene, 64).image, 3.0, 0.02);
+    expect_ramps(render(scene, 256).image, 3.0, 0.02);
 }
 
 // Two meshes of one BSDF under an even sky, one of them out of sight and before the other in the texture.
@@ -95,7 +95,7 @@ TEST(MeshAttributes, ReflectanceOfEachMesh) {
                                          attribute("reflectance", "vertex_color") + "</bsdf></bsdf>" + plate("<ref id=\"b\"/>", away) +
                                          plate("<ref id=\"b\"/>")));
     EXPECT_EQ(scene.materials.size(), 1U);
-    expect_ramps(render(scene, 64).image, 1.0, 0.02);
+    expect_ramps(render(scene, 1024).image, 1.0, 0.02);
 }
 
 TEST(MeshAttributes, FacesAndOpacity) {
