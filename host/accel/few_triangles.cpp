@@ -28,15 +28,25 @@ void summarize(FewTriangleSet& few) {
     s.per_length = static_cast<float>(per_length);
     s.triangle_count = static_cast<std::uint32_t>(few.triangles.size());
     s.vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
+    s.analytic_count = static_cast<std::uint32_t>(few.analytics.size());
+}
+
+void add_analytics(FewTriangleSet& few, const Bvh& bvh, std::span<const Bounds> bounds) {
+    std::set<std::uint32_t> seen;
+    for (const std::uint32_t entry : bvh.analytic_order) {
+        if (!seen.insert(entry).second) continue;
+        const Bounds& box = bounds[entry & ~PRIMITIVE_MASKED];
+        few.analytics.push_back({{box.lower.x, box.lower.y, box.lower.z}, {box.upper.x, box.upper.y, box.upper.z}, entry});
+    }
 }
 
 }  // namespace
 
-FewTriangleSet find_few_triangles(const Bvh& bvh) {
+FewTriangleSet find_few_triangles(const Bvh& bvh, std::span<const Bounds> analytic_bounds) {
     FewTriangleSet few;
     std::map<std::array<float, 3>, std::uint32_t> known;
     std::set<std::uint32_t> seen;  // spatial splits put a triangle into several leaves
-    if (!bvh.analytic_order.empty() || bvh.blocks.size() > FEW_TRIANGLES_MAX) return {};
+    if (analytic_bounds.size() > FEW_ANALYTIC_MAX || bvh.blocks.size() > FEW_TRIANGLES_MAX) return {};
     for (std::size_t b = 0; b < bvh.blocks.size(); ++b) {
         const TriangleBlock& block = bvh.blocks[b];
         for (std::uint32_t lane = 0; lane < BVH_WIDTH; ++lane) {
@@ -59,7 +69,9 @@ FewTriangleSet find_few_triangles(const Bvh& bvh) {
         }
     }
     if (few.triangles.size() > FEW_TRIANGLES_MAX || known.size() > FEW_VERTICES_MAX) return {};
-    if (!few.triangles.empty()) summarize(few);
+    if (few.triangles.empty()) return {};
+    add_analytics(few, bvh, analytic_bounds);
+    summarize(few);
     return few;
 }
 

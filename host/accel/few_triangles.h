@@ -1,6 +1,7 @@
 // Scenes so small that testing every triangle beats a hierarchy (kernels/shapes/few_triangles.h).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "accel/bvh.h"
@@ -10,11 +11,12 @@ namespace wavelobe {
 struct FewTriangleSet {
     std::vector<float> vertices;  // 3 each, distinct, in the unit of the summary
     std::vector<FewTriangle> triangles;
+    std::vector<FewAnalytic> analytics;
     FewSummary summary{};
 };
 
-// The triangles of a hierarchy, each once, naming the slots where the hierarchy keeps them. Empty when there are too many, or
-// when there are shapes that are not triangles.
-FewTriangleSet find_few_triangles(const Bvh& bvh);
+// The triangles of a hierarchy, each once, naming the slots where the hierarchy keeps them, and its analytic shapes, whose
+// bounds are given by number. Empty when there are too many of either, or no triangles.
+FewTriangleSet find_few_triangles(const Bvh& bvh, std::span<const Bounds> analytic_bounds = {});
 
 }  // namespace wavelobe

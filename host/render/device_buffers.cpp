@@ -89,8 +89,9 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     if (!scene.features.few_triangles) add("bvh_nodes", bvh.nodes);
     add("few_vertices", few.vertices);
     add("few_triangles", few.triangles);
+    add("few_analytics", few.analytics);
     add("triangle_blocks", bvh.blocks);
-    add("analytic_order", bvh.analytic_order);
+    if (!scene.features.few_triangles) add("analytic_order", bvh.analytic_order);
     // An empty scene still has kernels that name these.
     add("primitive_shapes", scene.primitive_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.primitive_shapes);
     add("shapes", scene.shapes.empty() ? std::vector<DeviceShape>(1) : scene.shapes);

@@ -130,7 +130,8 @@ void Renderer::State::build_geometry() {
     auto start = Clock::now();
     const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
-    const FewTriangleSet few = scene_data.features.instances || settings.always_hierarchy ? FewTriangleSet{} : find_few_triangles(bvh);
+    const bool hierarchy = scene_data.features.instances || settings.always_hierarchy;
+    const FewTriangleSet few = hierarchy ? FewTriangleSet{} : find_few_triangles(bvh, scene_data.analytic_bounds);
     scene_data.features.few_triangles = !few.triangles.empty();
     scene_data.parameters.few = few.summary;
     stats.setup_parts["bvh"] = seconds_since(start);

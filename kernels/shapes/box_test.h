@@ -33,6 +33,11 @@ INLINE float reciprocal_direction(float d) {
     return 1.0f / (fabs(d) < least ? copysign(least, d) : d);
 }
 
+INLINE Float reciprocal_lanes(Float d) {
+    const Float least = (Float)0x1p-60f;
+    return 1.0f / SELECT(fabs(d) < least, as_Float(as_UInt(least) | (as_UInt(d) & (UInt)0x80000000u)), d);
+}
+
 // By the signs of the direction: 1 where negative.
 INLINE void choose_rows(BoxTest *b, uint sx, uint sy, uint sz) {
     b->near_row_x = sx * NODE_ROW_BYTES, b->far_row_x = (1u - sx) * NODE_ROW_BYTES;

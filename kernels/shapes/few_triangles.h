@@ -18,6 +18,10 @@ typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
     global const struct FewSummary *summary;
+#if HAS_ANALYTIC
+    global const struct Analytic *analytics;
+    global const struct FewAnalytic *few_analytics;
+#endif
 #if HAS_OPACITY
     OpacityView opacity;
 #endif
@@ -26,8 +30,10 @@ typedef struct {
 // Where opacity lets some rays pass, each has a key.
 #if HAS_MASKS
 #define KEY_PARAMETER , UInt key
+#define PASS_KEY , key
 #else
 #define KEY_PARAMETER
+#define PASS_KEY
 #endif
 
 // The vertices as the rays see them.
@@ -145,16 +151,14 @@ INLINE Int hit_triangle(FewTriangles g, const TurnedVertices *v, uint index, con
     return kept_mask(met);
 }
 
-#if HAS_MASKS
-#define PASS_KEY , key
-#else
-#define PASS_KEY
-#endif
-
 typedef struct {
     Float t, u, v;
     UInt slot; // HIT_NONE: nothing
 } LaneHit;
+
+#if HAS_ANALYTIC
+#include "shapes/few_analytic.h"
+#endif
 
 // The nearest hit of each ray in (0, limit).
 INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from KEY_PARAMETER) {
@@ -175,6 +179,9 @@ INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float
     Int found = slot != (UInt)HIT_NONE;
     LaneHit h = {SELECT(found, nearest.depth / nearest.area * (1.0f / g.summary->per_length), limit), nearest.wb / nearest.area,
                  nearest.wc / nearest.area, slot};
+#if HAS_ANALYTIC
+    closest_few_analytic(g, origin, direction, &h PASS_KEY);
+#endif
     return h;
 }
 
@@ -193,6 +200,9 @@ INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, 
         left &= keep_mask(!hit_triangle(g, &turned, i, &ray, reach, ONE, &t PASS_KEY));
         if (i % FEW_BETWEEN_LOOKS == 0u && !any_lane(kept_mask(left))) break;
     }
+#if HAS_ANALYTIC
+    left &= keep_mask(!any_few_analytic(g, origin, direction, limit, kept_mask(left) PASS_KEY));
+#endif
     return wanted & !kept_mask(left);
 }
 

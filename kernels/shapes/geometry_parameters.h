@@ -24,10 +24,17 @@
 #include "shapes/few_triangles.h"
 
 typedef FewTriangles Geometry;
+#if HAS_ANALYTIC
+#define FEW_ANALYTIC_PARAMETER , global const struct FewAnalytic *few_analytics
+#define FEW_ANALYTIC_ARGUMENT , analytics, few_analytics
+#else
+#define FEW_ANALYTIC_PARAMETER
+#define FEW_ANALYTIC_ARGUMENT
+#endif
 #define GEOMETRY_PARAMETERS \
-    global const float *few_vertices, global const struct FewTriangle *few_triangles OPACITY_PARAMETER
+    global const float *few_vertices, global const struct FewTriangle *few_triangles FEW_ANALYTIC_PARAMETER OPACITY_PARAMETER
 #define GEOMETRY_VIEW \
-    {few_vertices, few_triangles, &parameters->few OPACITY_ARGUMENT}
+    {few_vertices, few_triangles, &parameters->few FEW_ANALYTIC_ARGUMENT OPACITY_ARGUMENT}
 
 #else
 #include "shapes/trace_groups.h"

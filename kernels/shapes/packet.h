@@ -65,11 +65,6 @@ INLINE float least_lane(Float v) {
 
 INLINE float greatest_lane(Float v) { return -least_lane(-v); }
 
-INLINE Float reciprocal_lanes(Float d) {
-    const Float least = (Float)0x1p-60f;
-    return 1.0f / SELECT(fabs(d) < least, as_Float(as_UInt(least) | (as_UInt(d) & (UInt)0x80000000u)), d);
-}
-
 // Bounds of an axis for all rays: the nearer and farther end of the origins, and of the reciprocals.
 INLINE void bound_axis(Int in, uint negative, Float origin, Float reciprocal, float *near_origin, float *far_origin, float *near,
                        float *far) {

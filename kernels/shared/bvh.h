@@ -46,15 +46,24 @@ WAVELOBE_CHECK_SIZE(FewTriangle, 20);
 #define FEW_TRIANGLES_MAX 96u
 #define FEW_VERTICES_MAX 128u
 
+// Their spheres, disks and cylinders, each within its box.
+struct FewAnalytic {
+    float lower[3], upper[3];
+    Uint32 entry; // as in the analytic order
+};
+WAVELOBE_CHECK_SIZE(FewAnalytic, 28);
+
+#define FEW_ANALYTIC_MAX 16u
+
 // Vertices are kept in a unit of length of their own, a power of two near the size of the set, so that products of several
 // lengths neither overflow nor vanish whatever the unit of the scene. A sphere around all of them, in that unit:
 struct FewSummary {
     float center[3];
     float radius;
     float per_length; // units in one of the scene's
-    Uint32 triangle_count, vertex_count;
+    Uint32 triangle_count, vertex_count, analytic_count;
 };
-WAVELOBE_CHECK_SIZE(FewSummary, 28);
+WAVELOBE_CHECK_SIZE(FewSummary, 32);
 
 // One place where a group of shapes stands. A point p of the group is at to_world's linear part times p plus its
 // translation; rays are taken to the group by the inverse linear part, from that translation on.

@@ -233,11 +233,27 @@ TEST(FewTriangles, AreTheTrianglesOnceWithSharedVertices) {
     EXPECT_EQ(found.size(), triangles.size());
 }
 
-TEST(FewTriangles, AreNoneOfLargeScenesAndOfOtherShapes) {
+TEST(FewTriangles, AreNoneOfLargeScenesAndOfManyOtherShapes) {
     const Triangles triangles = triangle_soup(FEW_TRIANGLES_MAX + 1, 0.1F, 1.0F, {}, 6);
     EXPECT_TRUE(find_few_triangles(build_bvh(triangles, {}, BvhQuality::best, 1)).triangles.empty());
-    const std::vector<Bounds> sphere{{glm::vec3(-1), glm::vec3(1)}};
-    EXPECT_TRUE(find_few_triangles(build_bvh({triangles.data(), 3}, sphere, BvhQuality::best, 1)).triangles.empty());
+    std::vector<Bounds> shapes;
+    for (std::uint32_t i = 0; i < FEW_ANALYTIC_MAX; ++i) {
+        const glm::vec3 center(4.0F * static_cast<float>(i), 0, 0);
+        shapes.push_back({center - 1.0F, center + 1.0F});
+    }
+    const auto few = [&](std::size_t count) {
+        return find_few_triangles(build_bvh({triangles.data(), count}, shapes, BvhQuality::best, 1), shapes);
+    };
+    const FewTriangleSet set = few(3);
+    ASSERT_EQ(set.analytics.size(), shapes.size());
+    for (const FewAnalytic& a : set.analytics) {
+        ASSERT_LT(a.entry, shapes.size());
+        EXPECT_EQ(glm::vec3(a.lower[0], a.lower[1], a.lower[2]), shapes[a.entry].lower);
+        EXPECT_EQ(glm::vec3(a.upper[0], a.upper[1], a.upper[2]), shapes[a.entry].upper);
+    }
+    EXPECT_TRUE(few(0).analytics.empty());
+    shapes.push_back(shapes.front());
+    EXPECT_TRUE(few(3).triangles.empty());
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ public:
         for (const TriangleBlock& block : bvh.blocks) {
             for (const std::uint32_t primitive : block.primitive) primitives_.push_back(primitive & ~PRIMITIVE_MASKED);
         }
-        const FewTriangleSet set = few ? find_few_triangles(bvh) : FewTriangleSet{};
+        const FewTriangleSet set = few ? find_few_triangles(bvh, scene_.analytic_bounds) : FewTriangleSet{};
         scene_.features.few_triangles = few;
         scene_.parameters.few = set.summary;
         buffers_.upload(scene_, bvh, set);
