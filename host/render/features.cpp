@@ -133,6 +133,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
     out.define("HAS_LIGHT_TREE", f.light_tree);
+    out.define("HAS_GLOSSY_RECEIVERS", f.glossy_receivers());
     out.define("HAS_LIGHT_RANGE", f.light_range);
     out.define("HAS_SMOOTH_CONES", f.smooth_cones);
     out.define("HAS_FEW_TRIANGLES", f.few_triangles);
@@ -223,6 +224,8 @@ bool FeatureSet::has_lobe_class(std::uint32_t wanted) const {
     }
     return false;
 }
+
+bool FeatureSet::glossy_receivers() const { return light_tree && has_lobe_class(LOBE_CLASS_GLOSSY); }
 
 bool FeatureSet::has_surface_lights() const { return has_reach(*this, Reach::SURFACE); }
 bool FeatureSet::has_environment() const { return has_reach(*this, Reach::ENVIRONMENT); }
@@ -328,7 +331,8 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.instances ? 1 : 0) + (features.media ? 1 : 0);
+    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.glossy_receivers() ? 1 : 0) +
+                               (features.instances ? 1 : 0) + (features.media ? 1 : 0);
     const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;
     if (features.has_environment()) ++queues;

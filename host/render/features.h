@@ -80,6 +80,7 @@ struct FeatureSet {
 
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;
+    bool glossy_receivers() const;  // lobes have a say in which light is chosen
     bool has_environment() const;
 
     // Sums of a pixel in the buffer of layers, the number of its samples first; 0 without any.

@@ -19,22 +19,10 @@
 #define PATH_ID 11u       // of the path within its block
 #define PATH_DEPTH 12u    // vertices before this one
 #define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette
-#if HAS_LIGHT_TREE
-#define PATH_RECEIVER 14u // code of the normal where light was last sampled (lights/light_tree.h)
-#define PATH_INSTANCE 15u // of the hit, or INSTANCE_NONE; in scenes with instances
-#else
-#define PATH_INSTANCE 14u
-#endif
-#if HAS_INSTANCES
-#define PATH_MEDIUM (PATH_INSTANCE + 1u) // that the ray is in; in scenes with media
-#else
-#define PATH_MEDIUM PATH_INSTANCE
-#endif
-#if HAS_MEDIA
-#define PATH_ORIGIN (PATH_MEDIUM + 1u) // 3
-#else
-#define PATH_ORIGIN PATH_MEDIUM
-#endif
+#define PATH_RECEIVER 14u // where light was last sampled: code of the normal, and of the lobe in scenes with glossy ones (lights/receiver.h)
+#define PATH_INSTANCE (PATH_RECEIVER + HAS_LIGHT_TREE + HAS_GLOSSY_RECEIVERS) // of the hit, or INSTANCE_NONE; in scenes with instances
+#define PATH_MEDIUM (PATH_INSTANCE + HAS_INSTANCES) // that the ray is in; in scenes with media
+#define PATH_ORIGIN (PATH_MEDIUM + HAS_MEDIA)       // 3
 #define PATH_FIELDS (PATH_ORIGIN + 3u)
 
 #if HAS_ANALYTIC

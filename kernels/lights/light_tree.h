@@ -4,49 +4,8 @@
 #ifndef WAVELOBE_LIGHTS_LIGHT_TREE_H
 #define WAVELOBE_LIGHTS_LIGHT_TREE_H
 
-#include "core/math.h"
-#include "core/vector.h"
+#include "lights/receiver.h"
 #include "shared/lights.h"
-
-// ---- who receives -------------------------------------------------------------------------------------------
-
-// A path carries the normal it left a surface with as two numbers of 16 bits: what chose a light must be found again where
-// the path hits one, exactly. Octahedra: Meyer, Suessmuth, Sussner, Stamminger, Greiner 2010, "On Floating-Point
-// Normal Vectors". RECEIVER_ANY stands for a surface that receives from both sides.
-#define RECEIVER_ANY 0xffffffffu
-#define RECEIVER_STEPS 32767.0f
-
-INLINE UInt receiver_code(Vec3 normal) {
-    Vec3 m = absolute(normal);
-    Float inverse = 1.0f / (m.x + m.y + m.z);
-    Float x = normal.x * inverse, y = normal.y * inverse;
-    Int folded = normal.z < 0.0f;
-    Float fx = copy_sign(1.0f - fabs(y), x), fy = copy_sign(1.0f - fabs(x), y);
-    x = SELECT(folded, fx, x);
-    y = SELECT(folded, fy, y);
-    UInt a = as_UInt(convert_Int(madd(x, (Float)RECEIVER_STEPS, (Float)(RECEIVER_STEPS + 0.5f))));
-    UInt b = as_UInt(convert_Int(madd(y, (Float)RECEIVER_STEPS, (Float)(RECEIVER_STEPS + 0.5f))));
-    return a | (b << 16);
-}
-
-// Where light is received. `normal` is zero where both sides receive.
-typedef struct {
-    Vec3 position, normal;
-    Int any_side;
-} Receiver;
-
-INLINE Receiver receiver_of(Vec3 position, UInt code) {
-    Receiver r;
-    r.position = position;
-    r.any_side = code == (UInt)RECEIVER_ANY;
-    Float x = (convert_Float(as_Int(code & (UInt)0xffffu)) - RECEIVER_STEPS) / RECEIVER_STEPS;
-    Float y = (convert_Float(as_Int(code >> 16)) - RECEIVER_STEPS) / RECEIVER_STEPS;
-    Float z = 1.0f - fabs(x) - fabs(y);
-    Float fold = LESSER(z, ZERO); // negative in the lower half
-    Vec3 n = vec3(x + copy_sign(fold, -x), y + copy_sign(fold, -y), z);
-    r.normal = normalize3(n);
-    return r;
-}
 
 // ---- importance of a node ------------------------------------------------------------------------------------
 
@@ -67,7 +26,8 @@ INLINE Float sine_of(Float cosine) { return sqrt(GREATER((1.0f - cosine) * (1.0f
          gather((global const float *)(tree) + WORD_OFFSET(LightNode, name) + 1u, (node) * RECORD_WORDS(LightNode)), \
          gather((global const float *)(tree) + WORD_OFFSET(LightNode, name) + 2u, (node) * RECORD_WORDS(LightNode)))
 
-// Bound on the irradiance from a node's lights, none of them nearer than its sphere is wide.
+// Bound on the irradiance from a node's lights, none of them nearer than its sphere is wide; of a glossy receiver on what its lobe
+// reflects of it.
 INLINE Float light_node_importance(global const struct LightNode *tree, UInt node, Receiver r) {
     Vec3 way = sub(light_node_vector(tree, node, center), r.position);
     Float radius = light_node_field(tree, node, radius);
@@ -88,10 +48,17 @@ INLINE Float light_node_importance(global const struct LightNode *tree, UInt nod
     Float cos_up = dot3(r.normal, direction);
     Float cos_received = SELECT(outside, cosine_beyond(sine_of(cos_up), cos_up, sin_bound, cos_bound), ONE);
     cos_received = GREATER(cos_received + HORIZON_SLACK, ZERO);
-    cos_received = SELECT(r.any_side, ONE, cos_received);
+    Float received = cos_received;
+#if HAS_GLOSSY_RECEIVERS
+    Float cos_lobe = dot3(r.axis, direction);
+    cos_lobe = SELECT(outside, cosine_beyond(sine_of(cos_lobe), cos_lobe, sin_bound, cos_bound), ONE);
+    // What reflects into the lobe knows no cosine.
+    received = madd(r.diffuse, cos_received, SELECT(cos_received > 0.0f, lobe_profile(r.peak, cos_lobe), ZERO));
+#endif
+    received = SELECT(r.any_side, ONE, received);
     Float emitted = GREATER(cos_emitted + HORIZON_SLACK, (Float)HORIZON_SLACK);
     Float distance2 = GREATER(GREATER(d2, r2), (Float)FLOAT_MIN_NORMAL);
-    Float importance = light_node_field(tree, node, intensity) * emitted * cos_received / distance2;
+    Float importance = light_node_field(tree, node, intensity) * emitted * received / distance2;
     return SELECT(shines, importance, ZERO);
 }
 

@@ -4,6 +4,9 @@
 
 #include "core/block.h"
 #include "shared/bvh.h"
+#if HAS_LIGHT_TREE
+#include "lights/receiver.h"
+#endif
 
 // A traced path as its queue holds it.
 typedef struct {
@@ -22,7 +25,7 @@ typedef struct {
     UInt instance;
 #endif
 #if HAS_LIGHT_TREE
-    UInt receiver;
+    ReceiverCode receiver;
 #endif
 #if HAS_MEDIA
     UInt medium;
@@ -53,7 +56,10 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
     p.instance = SELECT(p.live, read_uint(q, PATH_INSTANCE, i), (UInt)INSTANCE_NONE);
 #endif
 #if HAS_LIGHT_TREE
-    p.receiver = read_uint(q, PATH_RECEIVER, i);
+    p.receiver.normal = read_uint(q, PATH_RECEIVER, i);
+#if HAS_GLOSSY_RECEIVERS
+    p.receiver.lobe = read_uint(q, PATH_RECEIVER + 1u, i);
+#endif
 #endif
 #if HAS_MEDIA
     p.medium = SELECT(p.live, read_uint(q, PATH_MEDIUM, i), (UInt)0u);

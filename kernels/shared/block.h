@@ -16,7 +16,7 @@
 #define TILE_Y(id) ((((id) >> 2) & 3u) | (((id) >> 4) & 12u))
 
 #define QUEUE_PADDING 16u     // vector stores may run past the last slot
-#define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h; one more with a light tree, one with instances, one with media
+#define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h; one more with a light tree, one if that serves glossy lobes, one with instances, one with media
 #define SHADOW_FIELDS 12u     // one more with media
 
 // Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.

@@ -12,9 +12,17 @@
 // distance. GAMMA(16) covers the shear, the three products and sums and the division of the triangle test.
 #define SHADOW_REACH (1.0f - 2.0f * GAMMA(16))
 
+#if HAS_LIGHT_TREE
+#define RECEIVER_PARAMETER , ReceiverCode receiver
+#define RECEIVER_ARGUMENT , receiver
+#else
+#define RECEIVER_PARAMETER
+#define RECEIVER_ARGUMENT
+#endif
+
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
 INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneView *scene, SampleId sample, const TracedPath *path,
-                                const Surface *surface, const SmoothLobes *lobes, UInt receiver) {
+                                const Surface *surface, const SmoothLobes *lobes RECEIVER_PARAMETER) {
     LightInput in = scene->lights;
     Float u_light = ZERO, u1, u2;
 #if LIGHT_COUNT > 1
@@ -76,20 +84,41 @@ INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId samp
                                            : sample_diffuse_lobe(lobes, wi, u1, u2, u3);
 }
 
-// How the surface receives light: the code of its normal, or that of both sides.
-INLINE UInt surface_receiver(SurfaceView view, const Surface *surface) {
 #if HAS_LIGHT_TREE
-    UInt code = receiver_code(surface->frame.n);
+#if HAS_GLOSSY_RECEIVERS
+INLINE UInt surface_lobe(const Surface *surface, const SmoothLobes *lobes) {
+    UInt all = (UInt)0u;
+#define GLOSSY_BIT(name, NAME) all |= (UInt)(1u << LOBE_##NAME);
+    SCENE_GLOSSY_LOBES(GLOSSY_BIT)
+#undef GLOSSY_BIT
+    Int glossy = (lobes->lobes & all) != (UInt)0u;
+    if (!any_lane(glossy)) return (UInt)NO_LOBE;
+#if HAS_MIXTURE
+    Float diffuse = 1.0f - lobes->glossy_share;
+#else
+    Float diffuse = ZERO;
+#endif
+    Vec3 mirrored = mirror_direction(surface->wi);
+    Float density = eval_smooth_lobes(lobes, surface->wi, mirrored).pdf;
+    return SELECT(glossy, lobe_code(to_world(surface->frame, mirrored), density, diffuse), (UInt)NO_LOBE);
+}
+#endif
+
+// How the surface receives light. One that transmits does from both sides, wherever its lobes point.
+INLINE ReceiverCode surface_receiver(SurfaceView view, const Surface *surface, const SmoothLobes *lobes) {
+    ReceiverCode code;
+    code.normal = normal_code(surface->frame.n);
+#if HAS_GLOSSY_RECEIVERS
+    code.lobe = surface_lobe(surface, lobes);
+#endif
 #if HAS_TRANSMISSION
     UInt known = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
     UInt flags = GATHER_UINT_FIELD(view.materials, Material, known, flags);
-    code = SELECT((flags & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u, (UInt)RECEIVER_ANY, code);
+    code.normal = SELECT((flags & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u, (UInt)RECEIVER_ANY, code.normal);
 #endif
     return code;
-#else
-    return (UInt)0u;
-#endif
 }
+#endif
 
 // The body of both stages: `lobe_class` is a constant.
 INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const SceneView *scene) {
@@ -103,9 +132,11 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Surface surface = load_scattering_surface(scene, &path, sample);
         MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
+#if HAS_LIGHT_TREE
+        ReceiverCode receiver = surface_receiver(scene->surfaces, &surface, &lobes);
+#endif
 #if HAS_LIGHTS
-        UInt receiver = surface_receiver(scene->surfaces, &surface);
-        shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes, receiver);
+        shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes RECEIVER_ARGUMENT);
 #endif
         Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
@@ -119,7 +150,10 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
 #if HAS_LIGHT_TREE
-        append_uint(rays, PATH_RECEIVER, appended, receiver, lane_bits(alive));
+        append_uint(rays, PATH_RECEIVER, appended, receiver.normal, lane_bits(alive));
+#if HAS_GLOSSY_RECEIVERS
+        append_uint(rays, PATH_RECEIVER + 1u, appended, receiver.lobe, lane_bits(alive));
+#endif
 #endif
 #if HAS_MEDIA
         UInt medium = medium_beyond(scene->media, scene->surfaces, &surface, direction, path.medium);

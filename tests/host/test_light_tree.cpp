@@ -86,7 +86,7 @@ TEST(LightTree, ProbabilitiesAddUp) {
     const LightTree tree = build_light_tree(lights);
     for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(30.0, 2.0, 1.0), glm::dvec3(3.0, -9.0, 4.0)}) {
         double sum = 0.0;
-        for (const Uint32 trail : tree.trails) sum += reference_probability(tree.nodes, trail, p, std::nullopt);
+        for (const Uint32 trail : tree.trails) sum += reference_probability(tree.nodes, trail, ReferenceReceiver{p, {}});
         EXPECT_LE(sum, 1.0 + 1e-12);
         EXPECT_GT(sum, 0.5);
     }
@@ -104,12 +104,12 @@ TEST(LightTree, FollowsDistanceAndDirection) {
     }
     const LightTree tree = build_light_tree(lights);
     const glm::dvec3 up(0.0, 1.0, 0.0);
-    const double near = reference_probability(tree.nodes, tree.trails[0], glm::dvec3(0.0), up);
-    const double far = reference_probability(tree.nodes, tree.trails[1], glm::dvec3(0.0), up);
+    const double near = reference_probability(tree.nodes, tree.trails[0], ReferenceReceiver{glm::dvec3(0.0), up});
+    const double far = reference_probability(tree.nodes, tree.trails[1], ReferenceReceiver{glm::dvec3(0.0), up});
     EXPECT_GT(near, 0.5);
     EXPECT_GT(near, 10.0 * far);
-    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[2], glm::dvec3(0.0), up), 0.0);
-    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[0], glm::dvec3(0.0), -up), 0.0);
+    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[2], ReferenceReceiver{glm::dvec3(0.0), up}), 0.0);
+    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[0], ReferenceReceiver{glm::dvec3(0.0), -up}), 0.0);
 }
 
 TEST(LightTree, IsTheSameForTheSameLights) {

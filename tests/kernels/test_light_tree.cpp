@@ -16,16 +16,28 @@ struct Walk {
     Uint32 light;
     float probability;
     float by_trail;     // of the same light
-    glm::vec3 normal;   // as the receiver's code has it
+    // As the receiver's code has them:
+    glm::vec3 normal, axis;
+    float peak, diffuse;
+
+    ReferenceReceiver receiver(const glm::vec3& position, bool any_side) const {
+        ReferenceReceiver r{glm::dvec3(position), {}, glm::dvec3(axis), static_cast<double>(peak), static_cast<double>(diffuse)};
+        if (!any_side) r.normal = glm::dvec3(normal);
+        return r;
+    }
 };
 
 struct WalkQuery {
     glm::vec3 position, normal;
     bool any_side;
     float u, deep;
+    // Of a glossy receiver: the mirror direction, the density there, the share of diffuse lobes.
+    glm::vec3 axis{0.0F, 0.0F, 1.0F};
+    float density = 0.0F;
+    float diffuse = 1.0F;
 };
 
-std::vector<Walk> walk(const LightTree& tree, const std::vector<WalkQuery>& queries, int lanes = 16) {
+std::vector<Walk> walk(const LightTree& tree, const std::vector<WalkQuery>& queries, bool glossy = false, int lanes = 16) {
     Probe probe(R"(
 #include "lights/light_tree.h"
 #define IN(k) load(query + i + (k) * n)
@@ -33,7 +45,11 @@ kernel void run(global const struct LightNode *tree, global const uint *trails, 
                 global float *out) {
     size_t i = get_global_id(0) * LANES;
     Vec3 normal = vec3(IN(3), IN(4), IN(5));
-    UInt code = SELECT(IN(6) > 0.0f, (UInt)RECEIVER_ANY, receiver_code(normal));
+    ReceiverCode code;
+    code.normal = SELECT(IN(6) > 0.0f, (UInt)RECEIVER_ANY, normal_code(normal));
+#if HAS_GLOSSY_RECEIVERS
+    code.lobe = SELECT(IN(12) > 0.0f, lobe_code(vec3(IN(9), IN(10), IN(11)), IN(12), IN(13)), (UInt)NO_LOBE);
+#endif
     Receiver r = receiver_of(vec3(IN(0), IN(1), IN(2)), code);
     UInt light;
     Float p = walk_light_tree(tree, r, IN(7), IN(8), &light);
@@ -44,17 +60,26 @@ kernel void run(global const struct LightNode *tree, global const uint *trails, 
     store(out + i + 3 * n, r.normal.x);
     store(out + i + 4 * n, r.normal.y);
     store(out + i + 5 * n, r.normal.z);
+#if HAS_GLOSSY_RECEIVERS
+    store(out + i + 6 * n, r.axis.x);
+    store(out + i + 7 * n, r.axis.y);
+    store(out + i + 8 * n, r.axis.z);
+    store(out + i + 9 * n, r.peak);
+    store(out + i + 10 * n, r.diffuse);
+#endif
 })",
-                {.lanes = lanes, .defines = ""});
+                {.lanes = lanes, .defines = glossy ? "-DHAS_GLOSSY_RECEIVERS=1" : "-DHAS_GLOSSY_RECEIVERS=0"});
+    constexpr std::size_t inputs = 14;
     const std::size_t n = (queries.size() + 15) / 16 * 16;
-    std::vector<float> data(9 * n, 0.5F);
+    std::vector<float> data(inputs * n, 0.5F);
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const WalkQuery& q = queries[i];
         const float values[] = {q.position.x, q.position.y, q.position.z, q.normal.x, q.normal.y,
-                                q.normal.z,   q.any_side ? 1.0F : 0.0F,   q.u,        q.deep};
-        for (std::size_t k = 0; k < 9; ++k) data[k * n + i] = values[k];
+                                q.normal.z,   q.any_side ? 1.0F : 0.0F,   q.u,        q.deep,     q.axis.x,
+                                q.axis.y,     q.axis.z,     q.density,    q.diffuse};
+        for (std::size_t k = 0; k < inputs; ++k) data[k * n + i] = values[k];
     }
-    std::vector<float> out(6 * n);
+    std::vector<float> out(11 * n);
     const auto count = static_cast<cl_uint>(n);
     const std::vector<LightNode> nodes = tree.nodes;
     const std::vector<Uint32> trails = tree.trails;
@@ -66,6 +91,9 @@ kernel void run(global const struct LightNode *tree, global const uint *trails, 
         walks[i].probability = out[n + i];
         walks[i].by_trail = out[2 * n + i];
         walks[i].normal = {out[3 * n + i], out[4 * n + i], out[5 * n + i]};
+        walks[i].axis = {out[6 * n + i], out[7 * n + i], out[8 * n + i]};
+        walks[i].peak = glossy ? out[9 * n + i] : 0.0F;
+        walks[i].diffuse = glossy ? out[10 * n + i] : 1.0F;
     }
     return walks;
 }
@@ -79,6 +107,9 @@ std::vector<WalkQuery> random_queries(std::size_t count, unsigned seed, const Wa
         q.position = 12.0F * glm::vec3(unit(random), unit(random), unit(random));
         q.normal = glm::normalize(glm::vec3(unit(random), unit(random), unit(random)) + glm::vec3(1e-3F));
         q.any_side = unit(random) > 0.6F;
+        q.axis = glm::normalize(glm::vec3(unit(random), unit(random), unit(random)) + glm::vec3(1e-3F));
+        q.density = unit(random) > 0.6F ? 0.0F : std::exp(9.0F * unit(random));  // to beyond the sharpest that is told apart
+        q.diffuse = std::max(unit(random), 0.0F);
         if (fixed != nullptr) q = *fixed;
         q.u = number();
         q.deep = number();
@@ -86,10 +117,13 @@ std::vector<WalkQuery> random_queries(std::size_t count, unsigned seed, const Wa
     return queries;
 }
 
-TEST(LightTreeWalk, ProbabilitiesAreThoseOfDoublePrecision) {
+// With lobes and without.
+class LightTreeWalks : public testing::TestWithParam<bool> {};
+
+TEST_P(LightTreeWalks, ProbabilitiesAreThoseOfDoublePrecision) {
     const LightTree tree = build_light_tree(random_lights(500, 1));
     const std::vector<WalkQuery> queries = random_queries(1 << 14, 2);
-    const std::vector<Walk> walks = walk(tree, queries);
+    const std::vector<Walk> walks = walk(tree, queries, GetParam());
     std::size_t dark = 0;
     std::size_t strays = 0;
     for (std::size_t i = 0; i < walks.size(); ++i) {
@@ -100,9 +134,8 @@ TEST(LightTreeWalk, ProbabilitiesAreThoseOfDoublePrecision) {
             continue;
         }
         ASSERT_EQ(w.probability, w.by_trail) << "a hit weighs the sample that would have made it by another number";
-        std::optional<glm::dvec3> normal;
-        if (!queries[i].any_side) normal = glm::dvec3(w.normal);
-        const double expected = reference_probability(tree.nodes, tree.trails[w.light], glm::dvec3(queries[i].position), normal);
+        const double expected =
+            reference_probability(tree.nodes, tree.trails[w.light], w.receiver(queries[i].position, queries[i].any_side));
         // At the horizon a float's cosine keeps few digits.
         strays += std::abs(static_cast<double>(w.probability) / expected - 1.0) < 1e-3 ? 0 : 1;
     }
@@ -110,20 +143,19 @@ TEST(LightTreeWalk, ProbabilitiesAreThoseOfDoublePrecision) {
     EXPECT_LT(dark, walks.size() / 2);
 }
 
-TEST(LightTreeWalk, CountsFollowTheProbabilities) {
+TEST_P(LightTreeWalks, CountsFollowTheProbabilities) {
     const std::vector<LightBounds> lights = random_lights(120, 8);
     const LightTree tree = build_light_tree(lights);
-    WalkQuery fixed{{1.0F, -2.0F, 3.0F}, glm::normalize(glm::vec3(0.2F, 1.0F, -0.4F)), false, 0.0F, 0.0F};
+    WalkQuery fixed{{1.0F, -2.0F, 3.0F}, glm::normalize(glm::vec3(0.2F, 1.0F, -0.4F)), false, 0.0F, 0.0F,
+                    glm::normalize(glm::vec3(0.5F, 0.8F, 0.1F)), 4.0F, 0.3F};
     for (const bool any_side : {false, true}) {
         fixed.any_side = any_side;
-        const std::vector<Walk> walks = walk(tree, random_queries(1 << 18, 9, &fixed));
-        std::optional<glm::dvec3> normal;
-        if (!any_side) normal = glm::dvec3(walks[0].normal);
+        const std::vector<Walk> walks = walk(tree, random_queries(1 << 18, 9, &fixed), GetParam());
         std::vector<double> expected;
         std::vector<double> counts(lights.size() + 1, 0.0);
         double sum = 0.0;
         for (const Uint32 trail : tree.trails) {
-            expected.push_back(reference_probability(tree.nodes, trail, glm::dvec3(fixed.position), normal));
+            expected.push_back(reference_probability(tree.nodes, trail, walks[0].receiver(fixed.position, any_side)));
             sum += expected.back();
         }
         expected.push_back(std::max(1.0 - sum, 0.0));  // walks that end where no light shines
@@ -134,6 +166,8 @@ TEST(LightTreeWalk, CountsFollowTheProbabilities) {
         EXPECT_GT(result.degrees_of_freedom, 10);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Receivers, LightTreeWalks, testing::Bool(), [](const auto& p) { return p.param ? "glossy" : "diffuse"; });
 
 // With a second number for the deep part, lights of a chance of 2^-25 still come up as often as they should.
 TEST(LightTreeWalk, ReachesRareLights) {
@@ -166,12 +200,34 @@ TEST(LightTreeWalk, ReceiversKeepTheirNormal) {
     }
 }
 
+TEST(LightTreeWalk, ReceiversKeepTheirLobe) {
+    const LightTree tree = build_light_tree(random_lights(2, 1));
+    std::vector<WalkQuery> queries = random_queries(1 << 12, 14);
+    const std::vector<Walk> walks = walk(tree, queries, true);
+    for (std::size_t i = 0; i < walks.size(); ++i) {
+        const float peak = std::numbers::pi_v<float> * queries[i].density;
+        if (peak < 1.25F) {
+            ASSERT_EQ(walks[i].peak, 0.0F) << "as good as diffuse";
+        } else {
+            // Rounded down to a quarter of an octave, and to the sharpest there is.
+            ASSERT_LE(walks[i].peak, peak * 1.0001F);
+            ASSERT_GE(walks[i].peak, std::min(peak * 0.8F, 800.0F));
+        }
+        if (queries[i].density <= 0.0F) {
+            ASSERT_EQ(walks[i].diffuse, 1.0F);
+            continue;
+        }
+        ASSERT_LE(glm::length(walks[i].axis - queries[i].axis), 1.3e-3F) << i;
+        ASSERT_NEAR(walks[i].diffuse, 0.125F + 0.875F * queries[i].diffuse, 0.15F);
+    }
+}
+
 TEST(LightTreeWalk, SameBitsAtEveryWidth) {
     const LightTree tree = build_light_tree(random_lights(700, 12));
     const std::vector<WalkQuery> queries = random_queries(4096, 13);
-    const std::vector<Walk> wide = walk(tree, queries);
+    const std::vector<Walk> wide = walk(tree, queries, true);
     for (const int lanes : {1, 8}) {
-        EXPECT_EQ(std::memcmp(walk(tree, queries, lanes).data(), wide.data(), wide.size() * sizeof(Walk)), 0) << lanes;
+        EXPECT_EQ(std::memcmp(walk(tree, queries, true, lanes).data(), wide.data(), wide.size() * sizeof(Walk)), 0) << lanes;
     }
 }
 

@@ -81,7 +81,7 @@ void expect_weighted_against_light_sample(StageBench& bench) {
             const double choice = bench.scene().light_tree.empty()
                                       ? static_cast<double>(chosen.selection_probability)
                                       : reference_probability(bench.scene().light_tree, chosen.trail,
-                                                              hit - 4.0 * glm::normalize(glm::dvec3(direction)), std::nullopt);
+                                                              ReferenceReceiver{hit - 4.0 * glm::normalize(glm::dvec3(direction)), {}});
             ASSERT_GT(choice, 0.0);
             const double light = choice * 16.0 / (cosine * areas[triangle]);
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);

@@ -186,14 +186,11 @@ private:
         layout_size
     };
     static constexpr const char* layout_source = R"(
-#if !HAS_LIGHT_TREE
-#define PATH_RECEIVER 0u
-#endif
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
                            SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
                            PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
-                           PATH_INSTANCE,                            SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
+                           PATH_INSTANCE, SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";
