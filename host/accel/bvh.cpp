@@ -215,7 +215,7 @@ std::vector<RTCBuildPrimitive> build_primitives(const Source& source, std::span<
                                                 BvhQuality quality) {
     const std::size_t count = source.triangles.size() + analytic_bounds.size() + source.instance_bounds.size();
     // Spatial splits need room for the references they add.
-    std::vector<RTCBuildPrimitive> primitives(quality == BvhQuality::best ? 2 * count : count);
+    std::vector<RTCBuildPrimitive> primitives(quality == BvhQuality::split ? 2 * count : count);
     std::size_t next = 0;
     for (const TriangleVertices& v : source.triangles) {
         Bounds b;
@@ -239,27 +239,13 @@ struct ReleaseBvh {
     void operator()(RTCBVH bvh) const { rtcReleaseBVH(bvh); }
 };
 
-}  // namespace
-
-Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
-              int threads, std::span<const Bounds> instance_bounds) {
-    const auto start = std::chrono::steady_clock::now();
-    Source source{triangles, analytic_bounds.size(), instance_bounds};
-    const std::size_t count = triangles.size() + analytic_bounds.size() + instance_bounds.size();
-    Encoder encoder(source);
-    if (count == 0) {
-        encoder.encode_root(nullptr);
-        return encoder.take();
-    }
-    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
-    const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice(config.c_str()));
-    if (!device) throw std::runtime_error("Embree's builder could not be started");
-    const std::unique_ptr<RTCBVHTy, ReleaseBvh> tree(rtcNewBVH(device.get()));
+Bvh build_once(RTCDevice device, Source& source, std::span<const Bounds> analytic_bounds, BvhQuality quality) {
+    const std::unique_ptr<RTCBVHTy, ReleaseBvh> tree(rtcNewBVH(device));
     std::vector<RTCBuildPrimitive> primitives = build_primitives(source, analytic_bounds, quality);
 
     RTCBuildArguments arguments = rtcDefaultBuildArguments();
     arguments.byteSize = sizeof arguments;
-    arguments.buildQuality = quality == BvhQuality::best ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
+    arguments.buildQuality = quality == BvhQuality::split ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
     arguments.maxBranchingFactor = width;
     arguments.maxDepth = max_depth;
     // Full leaves: a block of eight costs the same whether it holds one triangle or eight.
@@ -268,7 +254,7 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
     arguments.maxLeafSize = width;
     arguments.bvh = tree.get();
     arguments.primitives = primitives.data();
-    arguments.primitiveCount = count;
+    arguments.primitiveCount = source.triangles.size() + analytic_bounds.size() + source.instance_bounds.size();
     arguments.primitiveArrayCapacity = primitives.size();
     arguments.createNode = create_node;
     arguments.setNodeChildren = set_children;
@@ -278,8 +264,53 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
     arguments.userPtr = &source;
     const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
     if (root == nullptr) throw std::runtime_error("Embree's builder could not build the hierarchy");
+    Encoder encoder(source);
     encoder.encode_root(root);
-    Bvh bvh = encoder.take();
+    return encoder.take();
+}
+
+double half_area(const glm::dvec3& lower, const glm::dvec3& upper) {
+    const glm::dvec3 e = upper - lower;
+    return e.x * e.y + e.y * e.z + e.z * e.x;
+}
+
+}  // namespace
+
+double expected_steps(const Bvh& bvh) {
+    double children = 0.0;
+    glm::dvec3 lower(std::numeric_limits<double>::infinity());
+    glm::dvec3 upper = -lower;
+    for (const BvhNode& node : bvh.nodes) {
+        for (unsigned i = 0; i < width && node.child[i] != BVH_EMPTY; ++i) {
+            const glm::dvec3 l(node.bounds[0][i], node.bounds[2][i], node.bounds[4][i]);
+            const glm::dvec3 u(node.bounds[1][i], node.bounds[3][i], node.bounds[5][i]);
+            children += half_area(l, u);
+            lower = glm::min(lower, l);
+            upper = glm::max(upper, u);
+        }
+    }
+    const double all = half_area(lower, upper);
+    return all > 0.0 ? 1.0 + children / all : 1.0;
+}
+
+Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
+              int threads, std::span<const Bounds> instance_bounds) {
+    const auto start = std::chrono::steady_clock::now();
+    Source source{triangles, analytic_bounds.size(), instance_bounds};
+    if (triangles.empty() && analytic_bounds.empty() && instance_bounds.empty()) {
+        Encoder encoder(source);
+        encoder.encode_root(nullptr);
+        return encoder.take();
+    }
+    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
+    const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice(config.c_str()));
+    if (!device) throw std::runtime_error("Embree's builder could not be started");
+    const bool both = quality == BvhQuality::best;
+    Bvh bvh = build_once(device.get(), source, analytic_bounds, both ? BvhQuality::fast : quality);
+    if (both) {
+        Bvh split = build_once(device.get(), source, analytic_bounds, BvhQuality::split);
+        if (expected_steps(split) < expected_steps(bvh)) bvh = std::move(split);
+    }
     bvh.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return bvh;
 }

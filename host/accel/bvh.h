@@ -32,13 +32,18 @@ struct Bvh {
     double build_seconds = 0.0;
 };
 
-enum class BvhQuality { fast, best };
+// `best` is the one of the others that the surface-area heuristic prefers: on few or large triangles splits often do not pay.
+enum class BvhQuality { fast, split, best };
 
-// Topology from Embree's public builder: surface-area heuristic, with spatial splits for `best`.
+// Topology from Embree's public builder: surface-area heuristic, with spatial splits for `split`.
 // Primitive ids in leaves index `triangles`. `analytic_bounds` must contain their shapes with room for rounding.
 // Throws std::runtime_error if the builder fails.
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
               int threads, std::span<const Bounds> instance_bounds = {});
+
+// Nodes and blocks that a random line through the root's bounds is expected to meet (Goldsmith, Salmon 1987, "Automatic
+// Creation of Object Hierarchies for Ray Tracing"): both take about as long.
+double expected_steps(const Bvh& bvh);
 
 // Adds the hierarchy of a group, whose triangles and analytic shapes are numbered from these on, and returns its root.
 std::uint32_t append_bvh(Bvh& all, const Bvh& group, std::uint32_t first_triangle, std::uint32_t first_analytic);

@@ -22,6 +22,7 @@
 namespace wavelobe {
 namespace {
 
+const std::map<std::string, BvhQuality> bvh_names = {{"fast", BvhQuality::fast}, {"best", BvhQuality::best}};
 const std::map<std::string, Driver> driver_names = {{"one-kernel", Driver::one_kernel}, {"staged", Driver::staged}};
 
 struct RenderOptions {
@@ -36,6 +37,7 @@ struct RenderOptions {
     std::optional<std::uint32_t> seed;
     int threads = 0;
     Driver driver = Driver::one_kernel;
+    std::optional<BvhQuality> bvh;
     double target_error = 0.0;  // 0: none
     double time_limit = 0.0;    // 0: none
     std::string device;
@@ -143,6 +145,7 @@ int run(const RenderOptions& options) {
     settings.samples_per_pixel = scene.sample_count;
     settings.seed = scene.seed;
     settings.driver = options.driver;
+    settings.bvh = options.bvh;
     settings.target_error = options.target_error;
     settings.time_limit = options.time_limit;
     if (!options.replay.empty()) return show_path(options, device, scene, settings);
@@ -217,6 +220,8 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
         ->check(CLI::Validator(is_sample, ""));
     add("--stats", options->stats_path, "FILE.json", "Write timings and counts as JSON");
     add("--device", options->device, "TEXT", "Part of the name of the OpenCL device or platform");
+    add("--bvh", options->bvh, "fast|best", "How the hierarchy of triangles is built (default: best up to 400,000 triangles)")
+        ->transform(CLI::CheckedTransformer(bvh_names, CLI::ignore_case));
     add("--driver", options->driver, "NAME", "How stages are run: one-kernel, or staged (a launch each; slower)")
         ->transform(CLI::CheckedTransformer(driver_names, CLI::ignore_case));
     command->add_flag("-q,--quiet", options->quiet, "Print nothing but the warnings of a faulty picture, and errors");

@@ -35,8 +35,9 @@ void mark_masked(Bvh& bvh, const DeviceScene& scene) {
 
 }  // namespace
 
-Bvh build_scene_bvh(DeviceScene& scene, int threads) {
-    const BvhQuality quality = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
+Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> chosen) {
+    const BvhQuality by_size = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
+    const BvhQuality quality = chosen.value_or(by_size);
     const std::span<const TriangleVertices> triangles = scene.triangles;
     const std::span<const Bounds> analytics = scene.analytic_bounds;
     const auto build = [&](const GeometryRange& range, BvhQuality wanted, std::span<const Bounds> instances) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "accel/few_triangles.h"
@@ -10,8 +11,8 @@
 
 namespace wavelobe {
 
-// Writes the roots of the groups into the instances.
-Bvh build_scene_bvh(DeviceScene& scene, int threads);
+// Writes the roots of the groups into the instances. Without a quality by the number of triangles.
+Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> quality = std::nullopt);
 
 // What the buffers of a scene will take, the hierarchy estimated from the number of primitives.
 std::uint64_t estimate_device_bytes(const DeviceScene& scene);

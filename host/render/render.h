@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/bvh.h"
 #include "cl/device.h"
 #include "scene/scene.h"
 
@@ -49,6 +50,7 @@ struct RenderSettings {
     double time_limit = 0.0;    // seconds of rendering; 0: none
     Estimator estimator = Estimator::mis;
     Sampler sampler = Sampler::sobol;
+    std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
     bool always_hierarchy = false;  // even where testing all triangles is faster
     SampleName replayed;            // with Driver::replay
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits

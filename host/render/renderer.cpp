@@ -128,7 +128,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
 
 void Renderer::State::build_geometry() {
     auto start = Clock::now();
-    const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units));
+    const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units), settings.bvh);
     scene_data.features.bvh_stack = traversal_stack(bvh.depth);
     const bool hierarchy = scene_data.features.instances || settings.always_hierarchy;
     const FewTriangleSet few = hierarchy ? FewTriangleSet{} : find_few_triangles(bvh, scene_data.analytic_bounds);

@@ -211,8 +211,34 @@ TEST_P(Hierarchy, IsTheSameForAnyNumberOfThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Hierarchy, testing::Values(BvhQuality::fast, BvhQuality::best),
-                         [](const auto& quality) { return quality.param == BvhQuality::fast ? "fast" : "best"; });
+INSTANTIATE_TEST_SUITE_P(All, Hierarchy, testing::Values(BvhQuality::fast, BvhQuality::split),
+                         [](const auto& quality) { return quality.param == BvhQuality::fast ? "fast" : "split"; });
+
+// A line that meets the root meets a box inside with the probability of its area over that of the root.
+TEST(ExpectedSteps, AreTheNodesAndBlocksOfARandomLine) {
+    Bvh bvh;
+    BvhNode node{};
+    for (std::uint32_t& child : node.child) child = BVH_EMPTY;
+    const auto set_child = [&node](std::size_t i, const glm::vec3& lower, const glm::vec3& upper, std::uint32_t child) {
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            node.bounds[2 * axis][i] = lower[axis];
+            node.bounds[2 * axis + 1][i] = upper[axis];
+        }
+        node.child[i] = child;
+    };
+    set_child(0, {0, 0, 0}, {1, 2, 2}, BVH_LEAF | 0U);
+    set_child(1, {1, 0, 0}, {2, 2, 2}, BVH_LEAF | 1U);
+    bvh.nodes.push_back(node);
+    EXPECT_DOUBLE_EQ(expected_steps(bvh), 1.0 + 2.0 * 8.0 / 12.0);
+}
+
+TEST(BestHierarchy, IsTheCheaperOfBoth) {
+    for (const float size : {0.02F, 0.8F}) {
+        const Triangles triangles = triangle_soup(3000, size, 1.0F, {}, 21);
+        const auto steps = [&](BvhQuality quality) { return expected_steps(build_bvh(triangles, {}, quality, 1)); };
+        EXPECT_EQ(steps(BvhQuality::best), std::min(steps(BvhQuality::fast), steps(BvhQuality::split)));
+    }
+}
 
 TEST(FewTriangles, AreTheTrianglesOnceWithSharedVertices) {
     const ClosedMesh mesh = cube_mesh(2);

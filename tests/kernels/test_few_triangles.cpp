@@ -79,7 +79,7 @@ FewProbe& probe() {
 
 struct SmallScene {
     explicit SmallScene(const Triangles& t)
-        : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::best, 1)), few(find_few_triangles(bvh)) {
+        : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {
         EXPECT_EQ(few.triangles.size(), triangles.size());
     }
     Triangles triangles;

@@ -71,7 +71,7 @@ class Packets : public testing::TestWithParam<Bundle> {};
 
 TEST_P(Packets, HaveTheBitsOfSingleRays) {
     const Bundle& b = GetParam();
-    const Bvh bvh = build_bvh(triangle_soup(5000, 0.1F, b.scale, b.offset, 1), {}, BvhQuality::best, 1);
+    const Bvh bvh = build_bvh(triangle_soup(5000, 0.1F, b.scale, b.offset, 1), {}, BvhQuality::split, 1);
     expect_same(bvh, bundles(8000, b.spread, b.scale, b.offset));
 }
 
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(All, Packets,
                          [](const auto& bundle) { return bundle.param.name; });
 
 TEST(Packets, OfEveryWidthAndPath) {
-    const Bvh bvh = build_bvh(triangle_soup(2000, 0.1F, 1.0F, {}, 2), {}, BvhQuality::best, 1);
+    const Bvh bvh = build_bvh(triangle_soup(2000, 0.1F, 1.0F, {}, 2), {}, BvhQuality::split, 1);
     const std::vector<TestRay> rays = bundles(3000, 0.03F, 1.0F, {});
     TraversalProbe eight(false, true, 8);
     expect_same(bvh, rays, eight);
@@ -97,14 +97,14 @@ TEST(Packets, BreakTiesAlike) {
     for (int copy = 0; copy < 3; ++copy) {
         for (const TriangleVertices& t : sphere_mesh(4, 1.0F, {}).triangles()) triangles.push_back(t);
     }
-    const Bvh bvh = build_bvh(triangles, {}, BvhQuality::best, 1);
+    const Bvh bvh = build_bvh(triangles, {}, BvhQuality::split, 1);
     expect_same(bvh, bundles(6000, 0.03F, 1.0F, {}));
 }
 
 // Neighbouring rays to the vertices and edges of a closed mesh, where several triangles are hit at one distance.
 TEST(Packets, OnEdgesAndVertices) {
     const ClosedMesh mesh = sphere_mesh(5, 1.0F, {});
-    const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::best, 1);
+    const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::split, 1);
     std::vector<TestRay> rays;
     Generator random(3);
     for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
@@ -121,7 +121,7 @@ TEST(Packets, OnEdgesAndVertices) {
 }
 
 TEST(Packets, RaysThatAreNotNumbersMissAndHarmNoNeighbour) {
-    const Bvh bvh = build_bvh(sphere_mesh(4, 1.0F, {}).triangles(), {}, BvhQuality::best, 1);
+    const Bvh bvh = build_bvh(sphere_mesh(4, 1.0F, {}).triangles(), {}, BvhQuality::split, 1);
     std::vector<TestRay> rays = bundles(500, 0.02F, 1.0F, {});
     for (std::size_t i = 0; i < rays.size(); i += 5) {
         const float bad = i % 3 == 0 ? nan : (i % 3 == 1 ? infinity : -infinity);

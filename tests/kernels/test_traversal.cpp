@@ -14,7 +14,7 @@ TraversalProbe& probe() {
     return instance;
 }
 
-Bvh hierarchy(const Triangles& triangles, BvhQuality quality = BvhQuality::best) {
+Bvh hierarchy(const Triangles& triangles, BvhQuality quality = BvhQuality::split) {
     return build_bvh(triangles, {}, quality, 2);
 }
 
@@ -44,7 +44,7 @@ class Soups : public testing::TestWithParam<Soup> {};
 TEST_P(Soups, AgreeWithBruteForce) {
     const Soup& soup = GetParam();
     const Triangles triangles = triangle_soup(soup.triangles, soup.size, soup.scale, soup.offset, 1);
-    for (const BvhQuality quality : {BvhQuality::fast, BvhQuality::best}) {
+    for (const BvhQuality quality : {BvhQuality::fast, BvhQuality::split}) {
         const Bvh bvh = hierarchy(triangles, quality);
         const std::vector<TestRay> rays = random_rays(40000, soup.scale, soup.offset, 2);
         expect_valid(rays, probe().trace(bvh, rays), bvh, triangles);
@@ -155,7 +155,7 @@ TEST(Traversal, OneTriangle) {
 
 TEST(Traversal, ManyCopiesOfOneTriangle) {
     const Triangles triangles(1000, {glm::vec3{-1, -1, 0}, glm::vec3{1, -1, 0}, glm::vec3{0, 1, 0}});
-    for (const BvhQuality quality : {BvhQuality::fast, BvhQuality::best}) {
+    for (const BvhQuality quality : {BvhQuality::fast, BvhQuality::split}) {
         const Bvh bvh = hierarchy(triangles, quality);
         const std::vector<TestRay> rays = random_rays(2000, 1.0F, {}, 9);
         expect_valid(rays, probe().trace(bvh, rays), bvh, triangles);
