@@ -55,7 +55,12 @@ private:
         for (const Element& node : document_.nodes) {
             node.index("mesh", document_.meshes.size(), "meshes");
             node.index("skin", document_.skins.size(), "skins");
-            if (const auto mesh = node.index("mesh", document_.meshes.size(), "meshes")) meshes_.check_weights(*mesh, node);
+            const auto mesh = node.index("mesh", document_.meshes.size(), "meshes");
+            if (!mesh) continue;
+            meshes_.check_weights(*mesh, node);
+            const std::vector<Primitive>& primitives = meshes_.primitives(*mesh);
+            const bool bends = std::any_of(primitives.begin(), primitives.end(), [](const Primitive& p) { return !p.influences.empty(); });
+            if (node.has("skin") && !primitives.empty() && !bends) node.fault("has a `skin`, and its mesh no JOINTS_0 that follow it");
         }
         for (std::size_t skin = 0; skin < document_.skins.size(); ++skin) joint_matrices(document_, accessors_, skin, tree_);
         for (const std::size_t node : tree_.shown) {

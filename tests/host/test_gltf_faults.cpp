@@ -51,9 +51,70 @@ TEST(GltfFaults, Ranges) {
     EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC2"; }), "POSITION is accessor 0 of type VEC2; expected VEC3");
 }
 
+TEST(GltfFaults, ListsWithoutItems) {
+    for (const char* name : {"accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes", "nodes", "samplers", "scenes",
+                             "skins", "textures"})
+        EXPECT_FAULT(after([&](GltfFile& f) { f.json[name] = Json::array(); }), std::string("/") + name + ": is an empty array");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"][0]["children"] = Json::array(); }), "/nodes/0/children: is an empty array");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["scenes"][0]["nodes"] = Json::array(); }), "/scenes/0/nodes: is an empty array");
+}
+
+TEST(GltfFaults, RulesBetweenParts) {
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["nodes"] = {{{"children", {1}}}, {{"mesh", 0}}}, f.json["scenes"][0]["nodes"] = {1}; }),
+                 "/scenes/0: shows node 1, a child of node 0");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["skins"] = Json::array({{{"joints", {0}}}}), f.json["nodes"][0]["skin"] = 0; }), "no JOINTS_0");
+    EXPECT_FAULT(after([](GltfFile& f) {
+        f.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"NORMAL", f.add_floats(unit_triangle(), "VEC3", 3)}}});
+    }), "moves NORMAL, which the primitive does not have");
+    EXPECT_FAULT(after([](GltfFile& f) {
+        Json& list = f.json["meshes"][0]["primitives"];
+        list.push_back(list[0]);
+        list[1]["targets"] = Json::array({{{"POSITION", 0}}});
+        list.push_back(list[0]);
+    }), "/meshes/0/primitives/2: has 0 morph targets");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0]["normalized"] = true; }), "`normalized` numbers of component type 5126");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 40; }), "a `byteStride` of 40 in 36 bytes");
+    for (const char* size : {"xmag", "ymag"})
+        EXPECT_FAULT(after([&](GltfFile& f) {
+            f.json["cameras"] = Json::array({{{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 1}}}}});
+            f.json["cameras"][0]["orthographic"][size] = 0;
+        }), "shows a picture of no size");
+}
+
+// Damage is found in what no node shows, too.
+TEST(GltfFaults, WhatNothingUses) {
+    EXPECT_FAULT(after([](GltfFile& f) { f.add_floats({0, NAN, 0}, "VEC3", 3); }), "/accessors/2: element 0 is not finite");
+    EXPECT_FAULT(after([](GltfFile& f) {
+        f.json["accessors"][1]["min"] = {0};
+        f.json["accessors"][1]["max"] = {1};
+    }), "/accessors/1: element 2 has 2, outside its `min` 0 and `max` 1");
+    EXPECT_FAULT(after([](GltfFile& f) {
+        f.json["images"] = Json::array({{{"uri", "data:image/png;base64,iVBORw0KGgo="}}});
+        f.json["textures"] = Json::array({{{"source", 0}}});
+    }), "/images/0");
+    GltfFile file;
+    file.json["buffers"] = Json::array({{{"byteLength", 4}}});
+    const std::string document = file.json.dump();
+    const auto word = [](std::size_t value) { return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)}); };
+    const std::string json = document + std::string((4 - document.size() % 4) % 4, ' ');
+    EXPECT_FAULT(texts(file.faults_of("scene.glb", "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json)), "no binary chunk");
+}
+
+// Some seconds by the square of their number, and far less by it.
+TEST(GltfFaults, MayBeMany) {
+    GltfFile file;
+    file.add_mesh(unit_triangle());
+    constexpr int count = 50'000;
+    for (int i = 0; i + 1 < count; ++i) file.json["nodes"][static_cast<std::size_t>(i)] = {{"children", {i + 1}}};
+    file.json["nodes"][count - 1] = {{"mesh", 0}, {"translation", {1, 0, 0}}};
+    EXPECT_EQ(mesh_of(file.read()).positions.at(0).x, 1.0F);
+    for (Json& node : file.json["nodes"]) node["mesh"] = 5;
+    EXPECT_EQ(file.faults().size(), 101U);
+}
+
 TEST(GltfFaults, Contents) {
     EXPECT_FAULT(after([](GltfFile& f) { f.buffer[36] = 9; }), "index 0 of accessor 1 is 9; the primitive has 3 vertices");
-    EXPECT_FAULT(after([](GltfFile& f) { f.buffer.replace(0, 4, bytes_of(std::vector<float>{NAN})); }), "POSITION: element 0 of accessor 0 is not finite");
+    EXPECT_FAULT(after([](GltfFile& f) { f.buffer.replace(0, 4, bytes_of(std::vector<float>{NAN})); }), "/accessors/0: element 0 is not finite");
     EXPECT_FAULT(after([](GltfFile& f) {
         f.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.add_floats({0, 0, 1}, "VEC3", 3);
     }), "NORMAL has 1 elements, and POSITION 3");

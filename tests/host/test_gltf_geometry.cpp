@@ -160,6 +160,26 @@ TEST(GltfGeometry, CamerasLookAlongMinusZ) {
     EXPECT_NEAR(std::tan(glm::radians(wide.camera.fov_x_degrees) / 2), 2.0 * std::tan(0.5), 1e-5);
 }
 
+TEST(GltfGeometry, OrthographicCameras) {
+    GltfFile file;
+    file.add_mesh(unit_triangle());
+    file.json["cameras"] =
+        Json::array({{{"type", "orthographic"}, {"orthographic", {{"xmag", 3.0}, {"ymag", 2.0}, {"znear", 0.0}, {"zfar", 9.0}}}}});
+    file.json["nodes"].push_back({{"camera", 0}, {"translation", {1, 2, 3}}, {"scale", {5, 5, 5}}});
+    file.json["scenes"][0]["nodes"] = {0, 1};
+    const Scene scene = file.read();
+    EXPECT_EQ(scene.camera.projection, Camera::Projection::orthographic);
+    EXPECT_EQ(scene.film.width, 1080);
+    EXPECT_EQ(scene.film.height, 720);
+    expect_near(glm::vec3(scene.camera.to_world[0]), {-3, 0, 0});
+    expect_near(glm::vec3(scene.camera.to_world[1]), {0, 3, 0});
+    expect_near(glm::vec3(scene.camera.to_world[2]), {0, 0, -1});
+    expect_near(glm::vec3(scene.camera.to_world[3]), {1, 2, 3});
+    EXPECT_EQ(scene.camera.near_clip, 0.0F);
+    EXPECT_EQ(scene.camera.far_clip, 9.0F);
+    expect_near(glm::vec3(file.read({.width = 100, .height = 50}).camera.to_world[0]), {-4, 0, 0});
+}
+
 TEST(GltfGeometry, AnimationsMoveNodes) {
     struct Case {
         const char* interpolation;

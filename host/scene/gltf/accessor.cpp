@@ -1,6 +1,7 @@
 #include "scene/gltf/accessor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -146,7 +147,34 @@ void Accessors::check(std::size_t i) {
         return;
     }
     if (element.has("sparse")) check_sparse(i);
+    if (a.normalized && a.component_type > 5123) element.fault(fmt::format("`normalized` numbers of component type {}; expected integers of 8 or 16 bits", a.component_type));
     a.readable = document_.faults.size() == before;
+    if (blocks_[i].data != nullptr || !sparse_[i].indices.empty()) check_values(i);
+    a.readable = document_.faults.size() == before;
+}
+
+// Numbers far outside the bounds that the file states come of damage; those a rounding outside do not.
+void Accessors::check_values(std::size_t i) {
+    const Accessor& a = list_[i];
+    const Element& element = document_.accessors[i];
+    const std::vector<double> low = element.numbers("min");
+    const std::vector<double> high = element.numbers("max");
+    const std::size_t n = a.components;
+    for (const auto* bound : {&low, &high})
+        if (!bound->empty() && bound->size() != n) return element.fault(fmt::format("`min` and `max` have {} and {} numbers; expected {}", low.size(), high.size(), n));
+    const bool bounded = !a.normalized && !low.empty() && !high.empty();
+    if (!bounded && a.component_type != 5126) return;
+    const std::vector<float> values = floats(i);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        const auto value = static_cast<double>(values[k]);
+        if (!std::isfinite(value)) return element.fault(fmt::format("element {} is not finite", k / n), "the buffer may be damaged");
+        if (!bounded) continue;
+        const double least = low[k % n];
+        const double most = high[k % n];
+        const double slack = 0.01 * std::abs(most - least) + 1e-3 * std::max(std::abs(least), std::abs(most)) + 1e-6;
+        if (value >= least - slack && value <= most + slack) continue;
+        return element.fault(fmt::format("element {} has {}, outside its `min` {} and `max` {}", k / n, value, least, most), "the buffer may be damaged");
+    }
 }
 
 void Accessors::check_sparse(std::size_t i) {

@@ -50,6 +50,7 @@ private:
     static Extent extent_of(const Accessor& a);
     void check(std::size_t i);
     void check_sparse(std::size_t i);
+    void check_values(std::size_t i);
     Block block(const Element& place, std::size_t count, const Extent& extent, bool interleaved);
     template <class Out, class Convert>
     void read(std::size_t i, std::vector<Out>& out, Convert convert) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -113,10 +114,48 @@ Perspective read_perspective(const Element& camera) {
     return out;
 }
 
+// Half the width and height that it shows.
+struct Orthographic {
+    double half_width = 1.0, half_height = 1.0;
+    double near_clip = 0.0, far_clip = 1.0;
+};
+
+Orthographic read_orthographic(const Element& camera) {
+    const Element o = camera.object("orthographic");
+    Orthographic out;
+    for (const char* name : {"xmag", "ymag", "znear", "zfar"}) o.require(name);
+    out.half_width = std::abs(o.number("xmag", 1.0));
+    out.half_height = std::abs(o.number("ymag", 1.0));
+    if (!(std::min(out.half_width, out.half_height) > 1e-30)) o.fault("shows a picture of no size", "expected `xmag` and `ymag` other than 0");
+    out.near_clip = o.number("znear", out.near_clip, {0.0, 1e30});
+    out.far_clip = o.number("zfar", out.far_clip, {0.0, 3e38});
+    if (!(out.near_clip < out.far_clip)) o.fault("`zfar` is not beyond `znear`");
+    return out;
+}
+
+void place_perspective(const Perspective& perspective, const PictureSize& size, Scene& scene) {
+    set_film(size, perspective.aspect.value_or(default_width / default_height), scene.film);
+    scene.camera.fov_x_degrees = horizontal_degrees(perspective.vertical, scene.film);
+    scene.camera.near_clip = static_cast<float>(perspective.near_clip);
+    scene.camera.far_clip = static_cast<float>(std::min(perspective.far_clip, 3e38));
+}
+
+// As of perspective cameras the height is what the file says, and the width follows the picture's.
+void place_orthographic(const Orthographic& orthographic, const PictureSize& size, Scene& scene) {
+    set_film(size, orthographic.half_width / orthographic.half_height, scene.film);
+    const auto half_width = static_cast<float>(orthographic.half_height * scene.film.width / scene.film.height);
+    Camera& camera = scene.camera;
+    camera.projection = Camera::Projection::orthographic;
+    camera.to_world[0] *= half_width;
+    camera.to_world[1] *= half_width;
+    camera.near_clip = static_cast<float>(orthographic.near_clip);
+    camera.far_clip = static_cast<float>(orthographic.far_clip);
+}
+
 }  // namespace
 
 void place_camera(Document& document, const NodeTree& tree, const PictureSize& size, Scene& scene) {
-    std::vector<std::optional<Perspective>> cameras;
+    std::vector<std::variant<Perspective, Orthographic>> cameras;
     for (const Element& camera : document.cameras) {
         camera.require("type");
         const std::string type = camera.text("type", "perspective");
@@ -124,28 +163,21 @@ void place_camera(Document& document, const NodeTree& tree, const PictureSize& s
             camera.fault("type `" + type + "`; expected perspective or orthographic");
         camera.require(type == "orthographic" ? "orthographic" : "perspective");
         if (camera.has("perspective") && camera.has("orthographic")) camera.fault("has both `perspective` and `orthographic`; expected one of them");
-        cameras.push_back(type == "perspective" ? std::optional(read_perspective(camera)) : std::nullopt);
+        if (type == "orthographic") cameras.emplace_back(read_orthographic(camera));
+        else cameras.emplace_back(read_perspective(camera));
     }
     for (const Element& node : document.nodes) node.index("camera", cameras.size(), "cameras");
-    bool orthographic = false;
     for (const std::size_t node : tree.shown) {
         const auto index = document.nodes[node].index("camera", cameras.size(), "cameras");
         if (!index) continue;
-        orthographic = orthographic || !cameras[*index];
-        if (!cameras[*index]) continue;
-        const Perspective& perspective = *cameras[*index];
-        set_film(size, perspective.aspect.value_or(default_width / default_height), scene.film);
         if (std::abs(glm::determinant(glm::dmat3(tree.world[node]))) < 1e-30)
             document.nodes[node].fault("shrinks its camera to nothing", "give it another scale");
         scene.camera.to_world = turned(tree.world[node]);
-        scene.camera.fov_x_degrees = horizontal_degrees(perspective.vertical, scene.film);
-        scene.camera.near_clip = static_cast<float>(perspective.near_clip);
-        scene.camera.far_clip = static_cast<float>(std::min(perspective.far_clip, 3e38));
+        if (const auto* perspective = std::get_if<Perspective>(&cameras[*index])) place_perspective(*perspective, size, scene);
+        else place_orthographic(std::get<Orthographic>(cameras[*index]), size, scene);
         return;
     }
-    if (orthographic)
-        document.warn(document.file + ": orthographic cameras are not supported; the scene is framed in perspective instead");
-    else document.warn(document.file + ": no camera; the whole scene is framed");
+    document.warn(document.file + ": no camera; the whole scene is framed");
     set_film(size, default_width / default_height, scene.film);
     frame_box(bounding_box(scene), scene);
 }

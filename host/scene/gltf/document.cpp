@@ -84,12 +84,13 @@ Document::Document(const std::string& path)
     cameras = root.objects("cameras");
     animations = root.objects("animations");
     scenes = root.objects("scenes");
+    refuse_empty_lists();
     read_buffers();
     read_views();
 }
 
 void Document::warn(const std::string& text) {
-    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+    if (said_.insert(text).second) warnings.push_back(text);
 }
 
 // The JSON of a .gltf or .glb; remembers the binary chunk.
@@ -98,6 +99,7 @@ std::string_view Document::split_container(const std::string& content) {
         throw InputError(Fault{file, 0, 0, fmt::format("byte {}", offset), message, "the file may be cut short: fetch it again"});
     };
     if (content.size() < 4 || word_at(content, 0) != magic_glb) return content;
+    is_binary_ = true;
     if (content.size() < 20) refuse(0, fmt::format("a binary glTF of {} bytes; its header alone takes 20", content.size()));
     const std::uint32_t version = word_at(content, 4);
     const std::size_t length = word_at(content, 8);
@@ -131,13 +133,11 @@ std::string_view Document::split_container(const std::string& content) {
 }
 
 void Document::parse_json(std::string_view text) {
-    const auto callback = [&](int depth, Json::parse_event_t, Json&) {
-        if (depth > deepest_nesting)
-            throw InputError(Fault{file, 0, 0, "", fmt::format("JSON nested deeper than {} levels", deepest_nesting), "no glTF needs that"});
-        return true;
-    };
+    // Looked at before: a parser that asks at each level takes time by the square of a list's length.
+    if (nests_deeper(text, deepest_nesting))
+        throw InputError(Fault{file, 0, 0, "", fmt::format("JSON nested deeper than {} levels", deepest_nesting), "no glTF needs that"});
     try {
-        json_ = Json::parse(text, callback);
+        json_ = Json::parse(text);
     } catch (const Json::parse_error& error) {
         const auto [line, column] = place_in_text(text, error.byte > 0 ? error.byte - 1 : 0);
         std::string what = error.what();
@@ -162,6 +162,18 @@ void Document::check_version() {
     const std::string least = asset.text("minVersion", "2.0");
     if (!version.starts_with("2.")) asset.fault("glTF version " + version + "; expected 2.0", "export it as glTF 2.0");
     else if (least != "2.0") asset.fault("asks for glTF " + least + "; this reader knows 2.0", "export it as glTF 2.0");
+}
+
+// The schema allows no list without items: what would be in it may have been lost.
+void Document::refuse_empty_lists() {
+    for (const char* name : {"accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes", "nodes", "samplers",
+                             "scenes", "skins", "textures"})
+        root.refuse_empty(name);
+    for (const Element& node : nodes) node.refuse_empty("children"), node.refuse_empty("weights");
+    for (const Element& scene : scenes) scene.refuse_empty("nodes");
+    for (const Element& mesh : meshes) mesh.refuse_empty("primitives"), mesh.refuse_empty("weights");
+    for (const Element& skin : skins) skin.refuse_empty("joints");
+    for (const Element& animation : animations) animation.refuse_empty("channels"), animation.refuse_empty("samplers");
 }
 
 void Document::check_extensions() {
@@ -253,6 +265,8 @@ void Document::read_buffers() {
             bytes = *binary_chunk_;
         } else if (buffer.present()) {
             // Its bytes come from elsewhere: a fault for those that ask for them.
+            if (i == 0 && is_binary_ && !buffer.extension("EXT_meshopt_compression").present())
+                buffer.fault("has no `uri`, and the file no binary chunk that would take its place", "the file may be cut short");
             readable_.push_back(false);
             buffers_.emplace_back();
             empty_.push_back(i);
@@ -274,6 +288,7 @@ void Document::read_views() {
         const auto offset = static_cast<std::size_t>(view.whole("byteOffset", 0, 0, std::int64_t{1} << 50));
         const auto length = static_cast<std::size_t>(view.whole("byteLength", 0, 1, std::int64_t{1} << 50));
         const auto stride = static_cast<std::size_t>(view.whole("byteStride", 0, 4, 252));
+        if (stride > length) view.fault(fmt::format("a `byteStride` of {} in {} bytes", stride, length));
         if (stride % 4 != 0) view.fault(fmt::format("a `byteStride` of {}; expected a multiple of 4", stride));
         const bool empty = buffer && std::find(empty_.begin(), empty_.end(), *buffer) != empty_.end();
         if (empty && view.extension("EXT_meshopt_compression").present())

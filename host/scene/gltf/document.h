@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <string_view>
 #include <vector>
 
@@ -46,16 +47,19 @@ private:
     void parse_json(std::string_view text);
     void check_version();
     void check_extensions();
+    void refuse_empty_lists();
     void read_buffers();
     std::string read_buffer(const Element& buffer, std::size_t index);
     void read_views();
 
     Json json_;
     std::string content_;
+    bool is_binary_ = false;
     std::optional<std::string_view> binary_chunk_;
     std::vector<std::string> owned_;
     std::vector<std::string_view> buffers_;
     std::vector<bool> readable_;
+    std::unordered_set<std::string> said_;  // warnings
     std::vector<std::size_t> empty_;  // buffers without bytes
 };
 

@@ -33,8 +33,7 @@ std::string item(const std::string& path, std::size_t i) { return path + "/" + s
 }  // namespace
 
 void Faults::add(Fault fault) {
-    const std::string text = fault.text();
-    if (std::any_of(list_.begin(), list_.end(), [&](const Fault& other) { return other.text() == text; })) return;
+    if (!known_.insert(fault.text()).second) return;
     if (list_.size() == most_faults) ++left_out_;
     else list_.push_back(std::move(fault));
 }
@@ -208,6 +207,11 @@ std::vector<std::size_t> Element::indices(const char* name, std::size_t count, c
 
 void Element::require(const char* name) const {
     if (present() && !has(name)) fault(std::string("has no `") + name + "`, which it must have");
+}
+
+void Element::refuse_empty(const char* list) const {
+    const Json* value = find(list);
+    if (value != nullptr && value->is_array() && value->empty()) faults_->add(child(list), "is an empty array; expected one item at least");
 }
 
 bool Element::check_vector(const char* name, const std::vector<double>& values, std::size_t length, NumberRange range) const {

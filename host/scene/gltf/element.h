@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -40,6 +41,7 @@ private:
     std::string file_;
     std::string_view text_;
     std::vector<Fault> list_;
+    std::unordered_set<std::string> known_;  // their texts
     std::size_t left_out_ = 0;
 };
 
@@ -75,6 +77,7 @@ public:
     std::optional<std::size_t> index(const char* name, std::size_t count, const char* what) const;
     std::vector<std::size_t> indices(const char* name, std::size_t count, const char* what) const;
     void require(const char* name) const;
+    void refuse_empty(const char* list) const;
 
     template <std::size_t N>
     std::array<float, N> vector(const char* name, const std::array<float, N>& fallback, NumberRange range = {}) const {

@@ -81,6 +81,18 @@ std::optional<std::size_t> child(std::string_view text, std::size_t from, std::s
 
 }  // namespace
 
+bool nests_deeper(std::string_view text, int levels) {
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"')
+            for (++i; i < text.size() && text[i] != '"'; ++i) i += text[i] == '\\' ? 1 : 0;
+        else if ((c == '{' || c == '[') && ++depth > levels) return true;
+        else if (c == '}' || c == ']') --depth;
+    }
+    return false;
+}
+
 std::pair<int, int> place_in_text(std::string_view text, std::size_t offset) {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
     const auto line = std::count(before.begin(), before.end(), '\n') + 1;

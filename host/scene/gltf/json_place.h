@@ -13,4 +13,7 @@ std::pair<int, int> place_in_json(std::string_view text, std::string_view pointe
 // Line and column of a byte.
 std::pair<int, int> place_in_text(std::string_view text, std::size_t offset);
 
+// Whether arrays and objects lie within each other more than that often; of text that need not be valid.
+bool nests_deeper(std::string_view text, int levels);
+
 }  // namespace wavelobe::gltf

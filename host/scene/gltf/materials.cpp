@@ -214,6 +214,7 @@ const SurfaceMaterial& Materials::mirrored(std::optional<std::size_t> material) 
 void Materials::check() {
     textures_.check();
     for (std::size_t i = 0; i < document_.materials.size(); ++i) appearance(i);
+    textures_.check_unused();
 }
 
 const Appearance& Materials::appearance(std::optional<std::size_t> material) {

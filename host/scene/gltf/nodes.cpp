@@ -80,7 +80,9 @@ void NodeTree::read_parents() {
 
 std::vector<std::size_t> NodeTree::roots() {
     std::vector<std::size_t> out;
-    for (const Element& scene : document_.scenes) scene.indices("nodes", document_.nodes.size(), "nodes");
+    for (const Element& scene : document_.scenes)
+        for (const std::size_t node : scene.indices("nodes", document_.nodes.size(), "nodes"))
+            if (parent_[node] >= 0) scene.fault(fmt::format("shows node {}, a child of node {}", node, parent_[node]), "expected roots alone");
     const auto chosen = document_.root.index("scene", document_.scenes.size(), "scenes");
     if (!document_.scenes.empty()) {
         if (document_.scenes.size() > 1)

@@ -100,7 +100,7 @@ std::vector<float> Meshes::attribute(const Element& attributes, const std::strin
     check_format(attributes, name, *index);
     const bool packed = unpacked_ && unpacked_->attributes.contains(name);
     std::vector<float> out = packed ? std::move(unpacked_->attributes.extract(name).mapped()) : accessors_.floats(*index);
-    if (name == "POSITION") check_bounds(attributes, *index, out);
+    if (packed && name == "POSITION") check_bounds(attributes, *index, out);
     const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
     if (bad == out.end()) return out;
     attributes.fault(fmt::format("{}: element {} of accessor {} is not finite", name,
@@ -157,6 +157,11 @@ void Meshes::read_influences(const Element& attributes, Primitive& out) {
         if (!attributes.has(joints.c_str()) || !attributes.has(weights.c_str())) return;
         Influence influence{grouped<glm::vec4>(attribute(attributes, joints, {"VEC4"}, out.mesh.positions.size())),
                             grouped<glm::vec4>(attribute(attributes, weights, {"VEC4"}, out.mesh.positions.size()))};
+        for (std::size_t i = 0; i < influence.weights.size(); ++i)
+            if (glm::any(glm::lessThan(influence.weights[i], glm::vec4(0.0F)))) {
+                attributes.fault(fmt::format("{}: element {} is negative", weights, i));
+                break;
+            }
         if (!influence.joints.empty() && !influence.weights.empty()) out.influences.push_back(std::move(influence));
     }
 }
@@ -177,7 +182,9 @@ std::vector<glm::vec4> Meshes::read_colors(const Element& attributes, std::size_
     return out;
 }
 
-MorphTarget Meshes::read_target(const Element& target, std::size_t vertices) {
+MorphTarget Meshes::read_target(const Element& attributes, const Element& target, std::size_t vertices) {
+    for (const std::string& name : target.keys())
+        if (!attributes.has(name.c_str())) target.fault(fmt::format("moves {}, which the primitive does not have", name));
     const auto vectors = [&](const char* name) { return grouped<glm::vec3>(attribute(target, name, {"VEC3"}, vertices)); };
     return {vectors("POSITION"), vectors("NORMAL"), vectors("TANGENT"), read_colors(target, vertices, 0.0F), read_uv_sets(target, vertices)};
 }
@@ -196,7 +203,7 @@ Primitive Meshes::read(const Element& primitive) {
     out.tangents = grouped<glm::vec4>(in_types("TANGENT", {"VEC4"}));
     out.colors = read_colors(attributes, out.mesh.positions.size(), 1.0F);
     read_influences(attributes, out);
-    for (const Element& target : primitive.objects("targets")) out.targets.push_back(read_target(target, out.mesh.positions.size()));
+    for (const Element& target : primitive.objects("targets")) out.targets.push_back(read_target(attributes, target, out.mesh.positions.size()));
     out.path = primitive.path();
     out.material = primitive.index("material", document_.materials.size(), "materials");
     read_triangles(primitive, out);
@@ -221,7 +228,11 @@ void Meshes::check() {
 void Meshes::check_weights(std::size_t mesh, const Element& owner) {
     const std::size_t weights = owner.numbers("weights").size();
     std::size_t targets = 0;
-    for (const Element& primitive : document_.meshes[mesh].objects("primitives")) targets = std::max(targets, primitive.objects("targets").size());
+    for (const Element& primitive : document_.meshes[mesh].objects("primitives")) {
+        const std::size_t own = primitive.objects("targets").size();
+        if (targets > 0 && own != targets) primitive.fault(fmt::format("has {} morph targets, and another primitive of its mesh {}", own, targets));
+        targets = std::max(targets, own);
+    }
     if (owner.has("weights") && weights != targets) owner.fault(fmt::format("has {} `weights` for {} morph targets", weights, targets));
 }
 

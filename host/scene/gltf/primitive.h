@@ -54,7 +54,7 @@ private:
     Primitive read(const Element& primitive);
     void read_triangles(const Element& primitive, Primitive& out);
     void read_influences(const Element& attributes, Primitive& out);
-    MorphTarget read_target(const Element& target, std::size_t vertices);
+    MorphTarget read_target(const Element& attributes, const Element& target, std::size_t vertices);
     std::vector<std::vector<glm::vec2>> read_uv_sets(const Element& attributes, std::size_t vertices);
     std::vector<glm::vec4> read_colors(const Element& attributes, std::size_t vertices, float alpha);
     void check_format(const Element& attributes, const std::string& name, std::size_t accessor);

@@ -71,6 +71,21 @@ void Textures::check() {
     }
 }
 
+void Textures::check_unused() {
+    std::vector<bool> plain(document_.images.size(), false);
+    for (const Element& texture : document_.textures)
+        if (const auto source = texture.index("source", plain.size(), "images")) plain[*source] = true;
+    for (const auto& [key, bitmap] : images_) plain[key.first] = false;
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        if (!plain[i]) continue;
+        try {
+            read_image(document_.images[i], Transfer::linear);
+        } catch (const InputError& error) {
+            document_.faults.add(error, document_.images[i].path());
+        }
+    }
+}
+
 // A texture may offer other formats by extensions; the plain one is read.
 std::optional<std::size_t> Textures::image_of(const Element& texture) {
     return texture.index("source", document_.images.size(), "images");

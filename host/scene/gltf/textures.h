@@ -20,6 +20,8 @@ public:
 
     // Checks all textures, samplers and images but the contents of images that nothing uses.
     void check();
+    // Decodes the PNG and JPEG images that nothing has asked for, to find what is damaged.
+    void check_unused();
     // The texture of a reference, each texel scaled; null where there is none, or a faulty one. Each image is read once for each
     // use of its channels.
     std::shared_ptr<const Texture> use(const Element& texture_info, Transfer transfer, const Rgb& factor, bool second_uvs);
