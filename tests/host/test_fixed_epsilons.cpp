@@ -34,7 +34,7 @@ const std::vector<Known> known_constants{
     {"lights/light_tree.h", "probability < 0x1p-12f", "where the digits of a random number run out"},
     {"lights/envmap.h", "#define LEAST_POLE_SINE 0x1p-36f", "keeps a density finite"},
     {"shapes/box_test.h", "least = 0x1p-60f", "component of a unit direction that divides"},
-    {"shapes/packet.h", "least = (Float)0x1p-60f", "the same of packets"},
+    {"shapes/box_test.h", "least = (Float)0x1p-60f", "the same of lanes"},
 };
 
 // Coefficients of polynomials.

@@ -111,7 +111,7 @@ TEST(Integrators, FaultsOfLayers) {
     EXPECT_NE(fault(R"(<integrator type="aov"><string name="aovs" value="d:uv"/><integrator type="path"/><integrator type="path"/></integrator>)")
                   .find("more than one integrator"),
               std::string::npos);
-    EXPECT_NE(fault(R"(<integrator type="ptracer"/>)").find("not supported"), std::string::npos);
+    EXPECT_NE(fault(R"(<integrator type="ptracing"/>)").find("not supported"), std::string::npos);
 }
 
 TEST(Emitters, ProjectorsAndSpotsWithATexture) {
