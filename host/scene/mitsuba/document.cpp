@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 
 #include <pugixml.hpp>
 
@@ -20,6 +21,13 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t max_include_depth = 15;
+constexpr std::size_t max_includes = 10000;  // each as often as it is named
+constexpr std::size_t max_properties = 256;
+
+// One that ends the reading.
+Fault fault_at(const Place& place, const std::string& element, const std::string& message, const std::string& hint) {
+    return {place.file == nullptr ? "" : *place.file, place.line, place.column, element, message, hint};
+}
 
 // One file while it is being read.
 struct SourceFile {
@@ -64,6 +72,8 @@ private:
         if (std::find(open_files_.begin(), open_files_.end(), canonical) != open_files_.end())
             return faults_.add(from, "<include>", "`" + path + "` includes itself, directly or through other files",
                                "remove one include of the loop");
+        if (++includes_ > max_includes)
+            throw InputError(fault_at(from, "<include>", "the scene includes more than " + std::to_string(max_includes) + " files", ""));
         if (open_files_.size() >= max_include_depth)
             return faults_.add(from, "<include>",
                                "includes are nested more than " + std::to_string(max_include_depth) + " deep",
@@ -140,8 +150,13 @@ private:
                             name + "=...");
             element.broken = true;
         };
-        for (const pugi::xml_attribute& attribute : node.attributes())
-            element.attributes.emplace_back(attribute.name(), substitution_.apply(attribute.value(), undefined));
+        try {
+            for (const pugi::xml_attribute& attribute : node.attributes())
+                element.attributes.emplace_back(attribute.name(), substitution_.apply(attribute.value(), undefined));
+        } catch (const std::length_error&) {
+            throw InputError(fault_at(element.place, "<" + element.tag + ">", "the parameters of the scene hold each other and grow beyond 64 MiB",
+                                      "let their values be plain"));
+        }
         if (legacy_) upgrade_element(element);
         return element;
     }
@@ -215,6 +230,8 @@ private:
         if (std::any_of(parent.properties.begin(), parent.properties.end(), same))
             return faults_.add(element.place, element.label(),
                                "the property is given more than once in " + parent.label(), "keep one of them");
+        if (parent.properties.size() == max_properties)
+            return faults_.add(element.place, element.label(), parent.label() + " has more than " + std::to_string(max_properties) + " properties", "");
         if (element.tag == "spectrum" && element.attribute("filename") != nullptr)
             parent.properties.push_back({name, read_spectrum_file(element), element.place});
         else parent.properties.push_back({name, parse_property(element, operations, faults_), element.place});
@@ -295,6 +312,7 @@ private:
     std::map<std::string, Object*> ids_;
     std::vector<std::string> open_files_;
     std::size_t object_depth_ = 0;
+    std::size_t includes_ = 0;
     bool legacy_ = false;  // the file that is being read is of Mitsuba 0.x
 };
 

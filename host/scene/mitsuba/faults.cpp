@@ -1,7 +1,6 @@
 // Places in scene files, and the faults found there.
 #include "scene/mitsuba/faults.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace wavelobe::mitsuba {
@@ -20,9 +19,12 @@ void Faults::add(const InputError& error, const Place& place, const std::string&
 }
 
 void Faults::add(Fault fault) {
-    const std::string text = fault.text();
-    if (std::any_of(list_.begin(), list_.end(), [&](const Fault& other) { return other.text() == text; })) return;
+    constexpr std::size_t most = 1000;
+    if (!texts_.insert(fault.text()).second) return;
     list_.push_back(std::move(fault));
+    if (list_.size() < most) return;
+    list_.push_back({list_.front().file, 0, 0, "", "has more faults than these " + std::to_string(most), "correct them first"});
+    throw InputError(std::move(list_));
 }
 
 }  // namespace wavelobe::mitsuba

@@ -1,6 +1,7 @@
 // Places in scene files, and the faults found there.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ struct Place {
     int column = 0;
 };
 
-// Faults found so far, each once; reading goes on after a fault so that one run shows all of them.
+// Faults found so far, each once; reading goes on after a fault so that one run shows all of them. Where there are more than
+// anyone reads, it ends: `add` throws them.
 class Faults {
 public:
     void add(const Place& place, std::string element, std::string message, std::string hint = "");
@@ -26,6 +28,7 @@ public:
 
 private:
     std::vector<Fault> list_;
+    std::set<std::string> texts_;
 };
 
 }  // namespace wavelobe::mitsuba

@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <stdexcept>
 
 namespace wavelobe::mitsuba {
+
+namespace {
+constexpr std::size_t most_replaced = std::size_t{64} << 20U;  // characters in all of a scene
+}
 
 Substitution::Substitution(const Definitions& definitions) {
     for (const auto& [name, value] : definitions) parameters_[name] = {value, false};
@@ -37,6 +42,8 @@ std::size_t Substitution::replace(std::string_view rest, std::string& result,
         const auto found = parameters_.find(rest.substr(0, length));
         if (found == parameters_.end()) continue;
         found->second.used = true;
+        replaced_ += found->second.value.size();
+        if (replaced_ > most_replaced) throw std::length_error("parameters of a scene");
         result += found->second.value;
         return length;
     }

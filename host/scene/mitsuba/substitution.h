@@ -19,7 +19,7 @@ public:
     void set_default(const std::string& name, const std::string& value);
 
     // The text with every $name replaced, \$ standing for the dollar sign. Names that are not defined go
-    // to `undefined` and leave nothing behind.
+    // to `undefined` and leave nothing behind. Throws std::length_error where parameters that hold others grow without measure.
     std::string apply(std::string_view text, const std::function<void(const std::string&)>& undefined);
 
     // Definitions that have replaced nothing so far.
@@ -36,6 +36,7 @@ private:
                         const std::function<void(const std::string&)>& undefined);
 
     std::map<std::string, Parameter, std::less<>> parameters_;
+    std::size_t replaced_ = 0;  // characters that came in so far
 };
 
 }  // namespace wavelobe::mitsuba

@@ -123,6 +123,7 @@ std::string quoted_list(const std::vector<std::string>& names) {
 }
 
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& names) {
+    if (wrong.size() > 100 || names.size() > 2000) return {};  // each name is compared letter by letter
     const std::string plain = plain_letters(wrong);
     const std::string* best = nullptr;
     std::size_t best_distance = std::max<std::size_t>(2, plain.size() / 3) + 1;
