@@ -72,7 +72,7 @@ std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
            bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
            bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
            bytes_of(scene.texels) + bytes_of(scene.media) + bytes_of(scene.shape_media) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
-           bytes_of(scene.environment_texels) + bytes_of(scene.environment_alias) + bytes_of(scene.environment_density);
+           bytes_of(scene.environment_texels) + bytes_of(scene.environment_sums) + bytes_of(scene.environment_density);
 }
 
 void DeviceBuffers::insert(const std::string& name, Buffer buffer) {
@@ -111,7 +111,7 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("light_tree", scene.light_tree);
     add("environment", scene.environment);
     add("environment_texels", scene.environment_texels);
-    add("environment_alias", scene.environment_alias);
+    add("environment_sums", scene.environment_sums);
     add("environment_density", scene.environment_density);
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});

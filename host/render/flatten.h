@@ -63,7 +63,7 @@ struct DeviceScene {
     std::vector<LightNode> light_tree;  // none if one light, or none with a place, is all there is
     std::vector<Environment> environment;  // none or one
     std::vector<float> environment_texels;
-    std::vector<AliasEntry> environment_alias;
+    std::vector<float> environment_sums;
     std::vector<float> environment_density;
 
     std::vector<float> filter_table;

@@ -210,7 +210,7 @@ void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius)
     environment.light = static_cast<std::uint32_t>(out_.lights.size());
     out_.environment.push_back(environment);
     out_.environment_texels = image.rgb;
-    out_.environment_alias = std::move(table.alias);
+    out_.environment_sums = std::move(table.sums);
     out_.environment_density = std::move(table.density);
     add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
 }

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "scene/fault.h"
-#include "tables/alias_table.h"
 #include "tables/light_power.h"
 
 namespace wavelobe {
@@ -50,6 +49,30 @@ void compensate(std::vector<double>& weight, double luminance_integral, std::siz
     }
     // Less than this share is rounding.
     if (std::accumulate(rest.begin(), rest.end(), 0.0) > 1e-6 * luminance_integral) weight = std::move(rest);
+}
+
+// From 0 to 1, in proportion to the weights; even where these are all zero.
+void append_running_sum(std::vector<float>& sums, std::span<const double> weights) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    double sum = 0.0;
+    sums.push_back(0.0F);
+    for (std::size_t i = 0; i + 1 < weights.size(); ++i) {
+        sum += total > 0.0 ? weights[i] / total : 1.0 / static_cast<double>(weights.size());
+        sums.push_back(std::min(static_cast<float>(sum), 1.0F));
+    }
+    sums.push_back(1.0F);
+}
+
+// From the sums as they were rounded: what is drawn and what is said of it are the same.
+void set_density(EnvironmentTable& table) {
+    const std::size_t rows = table.cell_rows;
+    const std::size_t columns = table.cell_columns;
+    const auto step = [&](std::size_t i) { return static_cast<double>(table.sums[i + 1]) - static_cast<double>(table.sums[i]); };
+    table.density.reserve(rows * columns);
+    for (std::size_t y = 0; y < rows; ++y) {
+        const double row = step(rows * (columns + 1) + y) * static_cast<double>(rows * columns);
+        for (std::size_t x = 0; x < columns; ++x) table.density.push_back(static_cast<float>(row * step(y * (columns + 1) + x)));
+    }
 }
 
 }  // namespace
@@ -99,15 +122,10 @@ EnvironmentTable build_environment_table(const Bitmap& image, const std::string&
     for (std::size_t y = 0; y < rows; ++y) {
         const std::span<const double> row = std::span(weight).subspan(y * columns, columns);
         row_weight[y] = std::accumulate(row.begin(), row.end(), 0.0);
-        const std::vector<AliasEntry> alias = build_alias_table(row);
-        table.alias.insert(table.alias.end(), alias.begin(), alias.end());
+        append_running_sum(table.sums, row);
     }
-    const std::vector<AliasEntry> alias = build_alias_table(row_weight);
-    table.alias.insert(table.alias.end(), alias.begin(), alias.end());
-
-    const double total = std::accumulate(row_weight.begin(), row_weight.end(), 0.0);
-    table.density.reserve(weight.size());
-    for (double w : weight) table.density.push_back(static_cast<float>(w / total * static_cast<double>(weight.size())));
+    append_running_sum(table.sums, row_weight);
+    set_density(table);
     return table;
 }
 

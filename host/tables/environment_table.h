@@ -11,9 +11,10 @@ namespace wavelobe {
 struct EnvironmentTable {
     Uint32 cell_columns = 0;  // the picture's width
     Uint32 cell_rows = 0;     // its height - 1: rows of texels reach from pole to pole
-    // The alias table of each row's cells, row by row, then that of the rows: cell_rows * (cell_columns + 1) entries.
-    std::vector<AliasEntry> alias;
-    std::vector<float> density;   // a cell: its probability over its share of the unit square
+    // Running sums of the probabilities of each row's cells, from 0 to 1, row by row, then those of the rows:
+    // cell_rows * (cell_columns + 1) + cell_rows + 1 numbers.
+    std::vector<float> sums;
+    std::vector<float> density;   // a cell: its probability, as these sums have it, over its share of the unit square
     double luminance_integral = 0.0;  // over the sphere of directions, W / m^2, before any scale
 };
 

@@ -18,10 +18,9 @@
 #define ENVIRONMENT_ARGUMENT 0
 #endif
 #if HAS_LIGHT_ENVMAP
-#define ENVMAP_PARAMETERS                                                                             \
-    , global const float *environment_texels, global const struct AliasEntry *environment_alias,      \
-        global const float *environment_density
-#define ENVMAP_ARGUMENTS environment_texels, environment_alias, environment_density
+#define ENVMAP_PARAMETERS \
+    , global const float *environment_texels, global const float *environment_sums, global const float *environment_density
+#define ENVMAP_ARGUMENTS environment_texels, environment_sums, environment_density
 #else
 #define ENVMAP_PARAMETERS
 #define ENVMAP_ARGUMENTS 0, 0, 0

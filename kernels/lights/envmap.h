@@ -5,14 +5,14 @@
 // texel j at v = j / (height - 1), so that the first row is the upper pole and the last the lower one.
 //
 // A cell is the square between four neighbouring texels: `width` columns, from the first texel's centre on, by
-// `height - 1` rows.  The alias table holds a table of each row's cells, row by row, and after these one of the rows: with
+// `height - 1` rows.  The running sums hold those of each row's cells, row by row, and after these those of the rows: with
 // a random number each for row and column a large picture leaves both enough digits for the place inside the cell.
 // `environment_density` is the density in (u, v), constant inside each cell.
 #ifndef WAVELOBE_LIGHTS_ENVMAP_H
 #define WAVELOBE_LIGHTS_ENVMAP_H
 
-#include "lights/alias_pick.h"
 #include "lights/infinite.h"
+#include "lights/step_pick.h"
 
 // A place on the picture: its cell, and where inside it.
 typedef struct {
@@ -87,8 +87,8 @@ INLINE Float envmap_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, 
 INLINE LightSample envmap_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
     global const struct Environment *e = in.environment;
     uint columns = e->cell_columns, rows = e->cell_rows;
-    AliasPick row = alias_pick(in.environment_alias, (UInt)(columns * rows), rows, u2);
-    AliasPick column = alias_pick(in.environment_alias, row.index * columns, columns, u1);
+    StepPick row = step_pick(in.environment_sums, (UInt)((columns + 1u) * rows), rows, u2);
+    StepPick column = step_pick(in.environment_sums, row.index * (columns + 1u), columns, u1);
     EnvironmentPlace p;
     p.row = row.index, p.column = column.index;
     p.row_fraction = row.fraction, p.column_fraction = column.fraction;

@@ -27,7 +27,7 @@ typedef struct {
     global const struct Analytic *analytics;
     global const struct Environment *environment;
     global const float *environment_texels;        // rgb, row 0 at the top
-    global const struct AliasEntry *environment_alias; // a row a cell
+    global const float *environment_sums;              // running sums of probabilities, see lights/envmap.h
     global const float *environment_density;       // a cell: probability over its share of the unit square, that is pdf in (u, v)
     global const struct Texture *textures;
     global const float *texels;

@@ -40,19 +40,19 @@ std::vector<double> cell_probabilities(const EnvironmentTable& table) {
     const std::size_t rows = table.cell_rows;
     const std::size_t columns = table.cell_columns;
     const auto chances = [&](std::size_t first, std::size_t count) {
-        std::vector<double> p(count, 0.0);
-        for (std::size_t i = 0; i < count; ++i) {
-            const AliasEntry& entry = table.alias[first + i];
-            const auto threshold = static_cast<double>(entry.threshold);
-            p[i] += threshold / static_cast<double>(count);
-            p[entry.other] += (1.0 - threshold) / static_cast<double>(count);
+        EXPECT_EQ(table.sums[first], 0.0F);
+        EXPECT_EQ(table.sums[first + count], 1.0F);
+        std::vector<double> p;
+        for (std::size_t i = first; i < first + count; ++i) {
+            EXPECT_LE(table.sums[i], table.sums[i + 1]);
+            p.push_back(static_cast<double>(table.sums[i + 1]) - static_cast<double>(table.sums[i]));
         }
         return p;
     };
-    const std::vector<double> row_chance = chances(rows * columns, rows);
+    const std::vector<double> row_chance = chances(rows * (columns + 1), rows);
     std::vector<double> result;
     for (std::size_t y = 0; y < rows; ++y) {
-        for (double p : chances(y * columns, columns)) result.push_back(p * row_chance[y]);
+        for (double p : chances(y * (columns + 1), columns)) result.push_back(p * row_chance[y]);
     }
     return result;
 }
@@ -62,7 +62,7 @@ TEST(EnvironmentTable, CellsFollowLuminanceTimesSolidAngle) {
     const EnvironmentTable table = build_environment_table(image);
     ASSERT_EQ(table.cell_columns, 13U);
     ASSERT_EQ(table.cell_rows, 8U);
-    ASSERT_EQ(table.alias.size(), 8U * 14U);
+    ASSERT_EQ(table.sums.size(), 8U * 14U + 9U);
     ASSERT_EQ(table.density.size(), 8U * 13U);
 
     const auto texel = [&](std::size_t x, std::size_t y) {
@@ -80,10 +80,10 @@ TEST(EnvironmentTable, CellsFollowLuminanceTimesSolidAngle) {
     const double sum = std::accumulate(weight.begin(), weight.end(), 0.0);
     const std::vector<double> p = cell_probabilities(table);
     for (std::size_t i = 0; i < weight.size(); ++i) {
-        EXPECT_NEAR(p[i], weight[i] / sum, 1e-6 * weight[i] / sum + 1e-8) << "cell " << i;
-        // The density is that probability over the cell's share of the unit square.
-        const double density = weight[i] / sum * 8.0 * 13.0;
-        EXPECT_NEAR(static_cast<double>(table.density[i]), density, 1e-6 * density) << "cell " << i;
+        // Sums are rounded to multiples of 2^-24 at the most.
+        EXPECT_NEAR(p[i], weight[i] / sum, 2.0 * 0x1p-24) << "cell " << i;
+        // The density is the probability with which a cell is drawn, over the cell's share of the unit square.
+        EXPECT_NEAR(static_cast<double>(table.density[i]), p[i] * 8.0 * 13.0, 1e-6 * p[i] * 8.0 * 13.0) << "cell " << i;
     }
     EXPECT_NEAR(table.luminance_integral, sum, 1e-12 * sum);
 }

@@ -81,7 +81,7 @@ inline void set_environment(LightBuffers& buffers, const EnvironmentReference& r
     e.cell_rows = table.cell_rows;
     e.radiance = {scale.r, scale.g, scale.b};
     buffers.texels = reference.image.rgb;
-    buffers.alias = table.alias;
+    buffers.sums = table.sums;
     buffers.density = table.density;
 }
 

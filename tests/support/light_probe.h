@@ -35,7 +35,7 @@ struct LightBuffers {
     std::vector<Analytic> analytics{1};
     std::vector<Environment> environment{1};
     std::vector<float> texels{0.0F};
-    std::vector<AliasEntry> alias{1};
+    std::vector<float> sums{0.0F};
     std::vector<float> density{0.0F};
     std::vector<::Texture> textures{1};
     std::vector<float> texture_texels{0.0F};
@@ -126,7 +126,7 @@ private:
         std::vector<float> out(fields * n);
         const auto count = static_cast<cl_uint>(n);
         probe_.run(kernel, n / lanes_, buffers_.lights, buffers_.analytics, buffers_.environment, buffers_.texels,
-                   buffers_.alias, buffers_.density, buffers_.textures, buffers_.texture_texels, light, data, count, out);
+                   buffers_.sums, buffers_.density, buffers_.textures, buffers_.texture_texels, light, data, count, out);
         return out;
     }
 
@@ -138,7 +138,7 @@ INLINE void put3(global float *p, uint n, Vec3 v) { store(p, v.x); store(p + n, 
     static constexpr const char* parameters =
         "global const struct Light *lights, global const struct Analytic *analytics, "
         "global const struct Environment *environment, global const float *environment_texels, "
-        "global const struct AliasEntry *environment_alias, global const float *environment_density, "
+        "global const float *environment_sums, global const float *environment_density, "
         "global const struct Texture *textures, global const float *texels, global const uint *light, "
         "global const float *query, uint n, global float *out";
     static constexpr const char* setup = R"(
@@ -149,7 +149,7 @@ INLINE void put3(global float *p, uint n, Vec3 v) { store(p, v.x); store(p + n, 
     in.analytics = analytics;
     in.environment = environment;
     in.environment_texels = environment_texels;
-    in.environment_alias = environment_alias;
+    in.environment_sums = environment_sums;
     in.environment_density = environment_density;
     in.textures = textures;
     in.texels = texels;
