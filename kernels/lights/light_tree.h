@@ -78,24 +78,25 @@ INLINE Float first_child_probability(global const struct LightNode *tree, UInt f
 // The light that `u` leads to, and the probability of getting there: zero where no light shines. A number of 24 bits is used
 // up on the way to one of many lights, so `u_deep` takes over below a probability of 2^-12.
 INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver r, Float u, Float u_deep, UInt *light) {
-    UInt child = (UInt)tree[0].child;
+    UInt node = (UInt)0u, child;
     Float probability = ONE;
     Int alive = TRUE_MASK, shallow = TRUE_MASK;
-    while (any_lane(alive & ((child & (UInt)LIGHT_LEAF) == (UInt)0u))) {
+    for (;;) {
+        child = GATHER_UINT_FIELD(tree, LightNode, node, child);
         Int inner = alive & ((child & (UInt)LIGHT_LEAF) == (UInt)0u);
+        if (!any_lane(inner)) break;
         UInt first = SELECT(inner, child, (UInt)1u);
         Int shining = inner;
         Float p = first_child_probability(tree, first, r, &shining);
         alive &= shining | !inner;
-        Int to_first = u < p;
-        Float share = SELECT(to_first, p, 1.0f - p);
-        Float rest = SELECT(to_first, u, u - p) / share;
+        Int to_second = u >= p;
+        Float share = SELECT(to_second, 1.0f - p, p);
+        Float rest = SELECT(to_second, u - p, u) / share;
         probability = SELECT(inner, probability * share, probability);
         Int switched = shallow & (probability < 0x1p-12f);
         u = SELECT(inner, LESSER(SELECT(switched, u_deep, rest), (Float)0x1.fffffep-1f), u);
         shallow &= !switched;
-        UInt next = GATHER_UINT_FIELD(tree, LightNode, first + SELECT(to_first, (UInt)0u, (UInt)1u), child);
-        child = SELECT(inner, next, child);
+        node = SELECT(inner, first + SELECT(to_second, (UInt)1u, (UInt)0u), node);
     }
     *light = SELECT(alive, child & (UInt)~LIGHT_LEAF, (UInt)0u);
     return SELECT(alive, probability, ZERO);
@@ -103,19 +104,21 @@ INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver r, Fl
 
 // Probability that a walk ends at the light with this trail.
 INLINE Float light_tree_probability(global const struct LightNode *tree, Receiver r, UInt trail, Int wanted) {
-    UInt child = (UInt)tree[0].child;
+    UInt node = (UInt)0u;
     Float probability = ONE;
     Int alive = wanted;
-    while (any_lane(alive & ((child & (UInt)LIGHT_LEAF) == (UInt)0u))) {
+    for (;;) {
+        UInt child = GATHER_UINT_FIELD(tree, LightNode, node, child);
         Int inner = alive & ((child & (UInt)LIGHT_LEAF) == (UInt)0u);
+        if (!any_lane(inner)) break;
         UInt first = SELECT(inner, child, (UInt)1u);
         Int shining = inner;
         Float p = first_child_probability(tree, first, r, &shining);
         alive &= shining | !inner;
-        Int to_first = (trail & (UInt)1u) == (UInt)0u;
+        UInt second = trail & (UInt)1u;
+        Int to_first = second == (UInt)0u;
         probability = SELECT(inner, probability * SELECT(to_first, p, 1.0f - p), probability);
-        UInt next = GATHER_UINT_FIELD(tree, LightNode, first + SELECT(to_first, (UInt)0u, (UInt)1u), child);
-        child = SELECT(inner, next, child);
+        node = SELECT(inner, first + second, node);
         trail = SELECT(inner, trail >> 1, trail);
     }
     return SELECT(alive, probability, ZERO);
