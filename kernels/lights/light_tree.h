@@ -89,14 +89,15 @@ INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver r, Fl
         Int shining = inner;
         Float p = first_child_probability(tree, first, r, &shining);
         alive &= shining | !inner;
-        Int to_second = u >= p;
+        UInt second = (UInt)1u - (as_UInt(u - p) >> 31);
+        Int to_second = second != (UInt)0u;
         Float share = SELECT(to_second, 1.0f - p, p);
         Float rest = SELECT(to_second, u - p, u) / share;
         probability = SELECT(inner, probability * share, probability);
         Int switched = shallow & (probability < 0x1p-12f);
         u = SELECT(inner, LESSER(SELECT(switched, u_deep, rest), (Float)0x1.fffffep-1f), u);
         shallow &= !switched;
-        node = SELECT(inner, first + SELECT(to_second, (UInt)1u, (UInt)0u), node);
+        node = SELECT(inner, first + second, node);
     }
     *light = SELECT(alive, child & (UInt)~LIGHT_LEAF, (UInt)0u);
     return SELECT(alive, probability, ZERO);
