@@ -89,7 +89,7 @@ INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver r, Fl
         Int shining = inner;
         Float p = first_child_probability(tree, first, r, &shining);
         alive &= shining | !inner;
-        UInt second = (UInt)1u - (as_UInt(u - p) >> 31);
+        UInt second = (UInt)1u - (as_UInt(u - p) >> 31); // by the sign: see scripts/memcheck
         Int to_second = second != (UInt)0u;
         Float share = SELECT(to_second, 1.0f - p, p);
         Float rest = SELECT(to_second, u - p, u) / share;
