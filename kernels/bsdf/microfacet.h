@@ -19,7 +19,7 @@
 #define HAS_BECKMANN 1
 #endif
 
-// Smoother surfaces than this have lobes below the resolution of a float direction.
+// Smoother surfaces than this have lobes below the resolution of a float direction; Mitsuba 3 stops at the same slope.
 #define MIN_ALPHA 1e-4f
 
 typedef struct {

@@ -14,7 +14,7 @@ INLINE UInt choose_of_blend(MaterialInput in, Int mine, Float *u) {
     Float weight = LESSER(GREATER(load_record_float(in, mine, Nesting, weight), ZERO), ONE);
     Int second = *u < weight;
     // Below 1, which rounding may reach.
-    *u = LESSER(SELECT(second, *u / weight, (*u - weight) / (1.0f - weight)), (Float)0x1.fffffep-1f);
+    *u = LESSER(SELECT(second, *u / weight, (*u - weight) / (1.0f - weight)), (Float)BELOW_ONE);
     return as_UInt(SELECT(second, nesting_word(in, inner[1]), nesting_word(in, inner[0])));
 }
 #endif

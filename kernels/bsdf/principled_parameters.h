@@ -45,11 +45,15 @@ INLINE Rgb tint_of(Rgb base) {
     return select3(bright > 0.0f, scale(base, 1.0f / SELECT(bright > 0.0f, bright, ONE)), vec3_all(ONE));
 }
 
+// Slopes are no smaller than Mitsuba 3 has them in this material, or its pictures of smooth ones would differ from ours.
+#define LEAST_PRINCIPLED_ALPHA 1e-3f
+
 // Slopes of microfacets of a roughness, stretched along u.
 INLINE Microfacets principled_microfacets(Float roughness, Float anisotropic) {
     Float square = roughness * roughness;
     Float aspect = sqrt(madd(anisotropic, (Float)-0.9f, ONE));
-    Microfacets d = {GREATER(square / aspect, (Float)1e-3f), GREATER(square * aspect, (Float)1e-3f), !TRUE_MASK};
+    const Float least = (Float)LEAST_PRINCIPLED_ALPHA;
+    Microfacets d = {GREATER(square / aspect, least), GREATER(square * aspect, least), !TRUE_MASK};
     return d;
 }
 

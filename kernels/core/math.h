@@ -22,6 +22,7 @@
 #define INV_SQRT_PI_F 0.564189583547756f
 #define SQRT_TWO_F 1.41421356237310f
 #define LN_TWO_F 0.693147180559945f
+#define BELOW_ONE 0x1.fffffep-1f // the largest float below one
 
 // What float(pi / 2) lacks.
 #define HALF_PI_REST_F -4.37113883e-8f

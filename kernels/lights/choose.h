@@ -63,7 +63,7 @@ INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_de
     }
     Float rest = (u - below) / (1.0f - below);
     UInt light;
-    Float walked = walk_light_tree(in->light_tree, receiver, LESSER(rest, (Float)0x1.fffffep-1f), u_deep, &light);
+    Float walked = walk_light_tree(in->light_tree, receiver, LESSER(rest, (Float)BELOW_ONE), u_deep, &light);
     in->light = SELECT(chosen, at_infinity, light);
     return SELECT(chosen, probability, (1.0f - below) * walked);
 }

@@ -95,7 +95,7 @@ INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver r, Fl
         Float rest = SELECT(to_second, u - p, u) / share;
         probability = SELECT(inner, probability * share, probability);
         Int switched = shallow & (probability < 0x1p-12f);
-        u = SELECT(inner, LESSER(SELECT(switched, u_deep, rest), (Float)0x1.fffffep-1f), u);
+        u = SELECT(inner, LESSER(SELECT(switched, u_deep, rest), (Float)BELOW_ONE), u);
         shallow &= !switched;
         node = SELECT(inner, first + second, node);
     }

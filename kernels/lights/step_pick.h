@@ -3,14 +3,12 @@
 #ifndef WAVELOBE_LIGHTS_STEP_PICK_H
 #define WAVELOBE_LIGHTS_STEP_PICK_H
 
-#include "core/lanes.h"
+#include "core/math.h"
 
 typedef struct {
     UInt index;     // below the number of steps
     Float fraction; // where in the step, even over [0, 1)
 } StepPick;
-
-#define BELOW_ONE 0.999999940395355224609375f // 1 - 2^-24
 
 // Among `count` steps whose sums start at `first` with 0 and end with 1. One without height is never picked.
 INLINE StepPick step_pick(global const float *sums, UInt first, uint count, Float u) {

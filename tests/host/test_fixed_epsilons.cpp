@@ -26,7 +26,7 @@ const std::vector<Known> known_constants{
     {"sampling/sampler.h", "convert_Float(as_Int(bits >> 8)) * 5.96", "24 bits as a fraction"},
     {"bsdf/microfacet.h", "#define MIN_ALPHA 1e-4f", "narrowest lobe that float directions hold"},
     {"bsdf/fresnel.h", "GREATER(sum, (Float)1e-30f)", "divisor of a quotient that is not selected"},
-    {"bsdf/principled_parameters.h", "(Float)1e-3f", "narrowest slopes, as Mitsuba 3 has them"},
+    {"bsdf/principled_parameters.h", "#define LEAST_PRINCIPLED_ALPHA 1e-3f", "narrowest slopes, as Mitsuba 3 has them"},
     {"bsdf/principled_parameters.h", "GREATER(wo.z + wi.z, (Float)1e-30f)", "divisor of a quotient that is not selected"},
     {"bsdf/ward.h", "GREATER(h.z, (Float)1e-9f)", "divisor of a quotient that is not selected"},
     {"lights/rectangle.h", "ONE), (Float)0x1p-40f)", "square of a sine below the rounding of its cosine"},
