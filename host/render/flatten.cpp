@@ -8,7 +8,7 @@
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "render/flatten_media.h"
-#include "render/presence.h"
+#include "scene/presence.h"
 #include "render/vertex_coordinates.h"
 #include "scene/fault.h"
 #include "tables/filter_table.h"

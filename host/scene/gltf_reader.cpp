@@ -15,6 +15,7 @@
 #include "scene/gltf/lights.h"
 #include "scene/gltf/materials.h"
 #include "scene/gltf/pose.h"
+#include "scene/gltf/volumes.h"
 
 namespace wavelobe {
 
@@ -43,9 +44,10 @@ public:
         place_camera(document_, tree_, {options_.width, options_.height}, scene_);
         if (!document_.faults.empty()) document_.faults.raise();
         clear_backs(scene_, single_sided_);
+        part_media(scene_, volumes_);
         add_light();
         if (dropped_ > 0) document_.warn(fmt::format("{}: {} triangles without area are left out", document_.file, dropped_));
-        scene_.warnings = document_.warnings;
+        scene_.warnings.insert(scene_.warnings.begin(), document_.warnings.begin(), document_.warnings.end());
         return std::move(scene_);
     }
 
@@ -138,6 +140,7 @@ private:
 
     void add_whole(Shape shape, TriangleMesh mesh, const Appearance& appearance) {
         if (appearance.single_sided) single_sided_.push_back(scene_.shapes.size());
+        if (appearance.is_volume) volumes_.push_back({scene_.shapes.size(), appearance.medium});
         shape.geometry = std::move(mesh);
         scene_.shapes.push_back(std::move(shape));
     }
@@ -180,6 +183,7 @@ private:
     Meshes meshes_;
     Materials materials_;
     std::vector<std::size_t> single_sided_;  // shapes
+    std::vector<Volume> volumes_;
     std::size_t dropped_ = 0;  // triangles without area
 };
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/gltf/volumes.h"
+
 namespace wavelobe::gltf {
 
 namespace {
@@ -89,9 +91,9 @@ void Materials::read_layers(const Element& material, MetallicRoughness& model, A
 // A volume that mostly lets light through is one of the dielectrics; other transmission is that of a thin wall.
 std::optional<MaterialModel> Materials::read_volume(const Element& material, const MetallicRoughness& surface, Appearance& out) {
     const Element volume = material.extension("KHR_materials_volume");
-    const double thickness = volume.number("thicknessFactor", 0.0, positive);
-    volume.number("attenuationDistance", 1.0, positive);
-    volume.vector<3>("attenuationColor", {1, 1, 1}, unit);
+    const Rgb absorption = absorption_of(volume);
+    const Parameter depth{Rgb(static_cast<float>(volume.number("thicknessFactor", 0.0, positive))), textures_.use(volume.object("thicknessTexture"), Transfer::linear, Rgb(1.0F), false), 1};
+    const double thickness = mean(depth);
     const double share = mean(surface.transmission);
     if (thickness == 0.0 || share == 0.0) return {};
     if (share < 0.5 || mean(surface.metallic) > 0.5) {
@@ -105,8 +107,11 @@ std::optional<MaterialModel> Materials::read_volume(const Element& material, con
         const Element pbr = material.object("pbrMetallicRoughness");
         tint.texture = take(pbr, "baseColorTexture", Transfer::of_format, out, tint.value);
     }
-    if (volume.has("attenuationDistance"))
-        document_.warn(fmt::format("{}: {}: absorption inside the volume is passed over", document_.file, material.path()));
+    out.is_volume = true;
+    if (absorption != Rgb(0.0F)) {
+        out.medium = static_cast<int>(scene_.media.size());
+        scene_.media.push_back({absorption, material.text("name", "material")});
+    }
     const auto roughness = static_cast<float>(mean(surface.roughness));
     const float alpha = roughness * roughness;
     const Parameter white{Rgb(1.0F), nullptr};

@@ -13,6 +13,8 @@ struct Appearance {
     std::optional<AreaEmitter> emitter;
     bool has_normal_map = false;
     bool single_sided = false;  // its back is not shown
+    bool is_volume = false;     // light goes on inside of it
+    int medium = -1;            // that absorbs there
     bool blends = false;  // alpha, that of vertices too, says how much of it is there
     std::vector<std::int64_t> uv_sets{};  // that its textures look up: the first, and the second
 };

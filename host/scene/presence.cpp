@@ -1,4 +1,4 @@
-#include "render/presence.h"
+#include "scene/presence.h"
 
 #include <algorithm>
 #include <limits>
