@@ -8,6 +8,7 @@
 #include "support/light_models.h"
 #include "support/light_probe.h"
 #include "support/statistics.h"
+#include "support/verification.h"
 
 namespace wavelobe::test {
 namespace {
@@ -88,6 +89,9 @@ SphereGrid grid_of(const LightModel& m) {
 TEST_P(Lights, SamplesFollowTheDensity) {
     LightProbe light = probe();
     const std::size_t count = 1 << 18;
+    const double threshold = sidak_threshold(0.01, 200);
+    Claim claim("Light transport", std::string(GetParam().name) + " light: samples against the density, chi-square",
+                "Sidak threshold / p");
     for (const LightModel& m : all_.models) {
         SCOPED_TRACE(m.label);
         const SphereGrid grid = grid_of(m);
@@ -109,9 +113,13 @@ TEST_P(Lights, SamplesFollowTheDensity) {
         std::vector<double> scaled;
         for (double e : expected) scaled.push_back(e * static_cast<double>(count) / total);
         const ChiSquareResult result = chi_square_test(counts, scaled);
-        EXPECT_GT(result.p_value, sidak_threshold(0.01, 200)) << result.statistic << " of " << result.degrees_of_freedom;
+        claim.observe(threshold / result.p_value, [&] {
+            return m.label + ": chi-square " + std::to_string(result.statistic) + " of " + std::to_string(result.degrees_of_freedom);
+        });
         EXPECT_GT(result.degrees_of_freedom, 10);
     }
+    claim.count(count * all_.models.size());
+    claim.at_most(1.0);
 }
 
 // The density of a hit is the one that sampling reports for it.
