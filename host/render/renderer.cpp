@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "cl/cache_lock.h"
 #include "cl/kernel_source.h"
@@ -56,6 +57,22 @@ void refuse_large_film(const Device& device, const DeviceScene& scene) {
 float layer_film_step(const RenderSettings& settings) {
     const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
     return open_end ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
+}
+
+struct TraversalData {
+    Bvh bvh;
+    FewTriangleSet few;  // empty where the hierarchy is to be walked
+};
+
+// Builds what rays meet, and enters into the scene's features how they are traced.
+TraversalData build_traversal(DeviceScene& scene, int threads, const RenderSettings& settings) {
+    TraversalData data{build_scene_bvh(scene, threads, settings.bvh), {}};
+    scene.features.bvh_stack = traversal_stack(data.bvh.depth);
+    const bool hierarchy = scene.features.instances || settings.always_hierarchy;
+    if (!hierarchy) data.few = find_few_triangles(data.bvh, scene.analytic_bounds);
+    scene.features.few_triangles = !data.few.triangles.empty();
+    scene.parameters.few = data.few.summary;
+    return data;
 }
 
 int slots_of(const RenderSettings& settings) {
@@ -128,15 +145,10 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
 
 void Renderer::State::build_geometry() {
     auto start = Clock::now();
-    const Bvh bvh = build_scene_bvh(scene_data, static_cast<int>(device.info().compute_units), settings.bvh);
-    scene_data.features.bvh_stack = traversal_stack(bvh.depth);
-    const bool hierarchy = scene_data.features.instances || settings.always_hierarchy;
-    const FewTriangleSet few = hierarchy ? FewTriangleSet{} : find_few_triangles(bvh, scene_data.analytic_bounds);
-    scene_data.features.few_triangles = !few.triangles.empty();
-    scene_data.parameters.few = few.summary;
+    const TraversalData traversal = build_traversal(scene_data, static_cast<int>(device.info().compute_units), settings);
     stats.setup_parts["bvh"] = seconds_since(start);
     start = Clock::now();
-    buffers.upload(scene_data, bvh, few);
+    buffers.upload(scene_data, traversal.bvh, traversal.few);
     stats.setup_parts["tables"] += seconds_since(start);
 }
 
@@ -213,8 +225,9 @@ Image Renderer::image() const {
 }
 
 std::string scene_program(const Scene& scene, const RenderSettings& settings) {
-    const FeatureSet features = flatten_scene(scene).features;
-    return flatten_includes(program_source(features, settings.lanes, slots_of(settings), settings.driver), "scene.cl");
+    DeviceScene data = flatten_scene(scene, settings.estimator);
+    build_traversal(data, static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)), settings);
+    return flatten_includes(program_source(data.features, settings.lanes, slots_of(settings), settings.driver), "scene.cl");
 }
 
 SceneSummary summarize(const Scene& scene) {

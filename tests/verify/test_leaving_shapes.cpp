@@ -69,7 +69,10 @@ Scene two_surfaces(Kind kind, const Placing& p, float gap) {
     glm::mat4 second = glm::scale(one, glm::vec3(1.0F + gap));
     const float reach = std::max(1e3F, 1e5F * gap);
     if (is_flat(kind)) second = glm::scale(glm::translate(one, {0, 0, gap}), glm::vec3(reach, reach, 1));
-    if (round) second = glm::translate(glm::scale(one, {1.0F + gap, 1.0F + gap, reach}), {0, 0, -0.5F});
+    // Rays rise along the axis by 1e4 gaps at most. A longer cylinder's base would lie so far away that its coordinates place the
+    // axis no better than the gap.
+    const float length = 4.0F + 4e4F * gap;
+    if (round) second = glm::translate(glm::scale(one, {1.0F + gap, 1.0F + gap, length}), {0, 0, -0.5F});
     add_kind(scene, kind, placed(p, second), material);
     return scene;
 }
