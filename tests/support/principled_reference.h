@@ -16,7 +16,9 @@ inline ReferenceValue reference_ward(const ::Material& m, const glm::dvec3& wi, 
     double norm = glm::dot(h, h) / std::pow(h.z, 4);
     if (m.flags & MATERIAL_WARD_CLASSIC) norm = 1.0 / (4.0 * std::sqrt(wi.z * wo.z));
     if (m.flags & MATERIAL_WARD_DUER) norm = 1.0 / (4.0 * wi.z * wo.z);
-    return {to_double(m.specular.value) * (g * norm * wo.z), g / (4.0 * glm::dot(n, wi) * std::pow(n.z, 3))};
+    // The cosine of wi and n, of unit directions: that floats are so to a rounding only must not turn its sign at the horizon.
+    const double cosine = 0.5 * glm::length(h);
+    return {to_double(m.specular.value) * (g * norm * wo.z), g / (4.0 * cosine * std::pow(n.z, 3))};
 }
 
 struct PrincipledTerms {
