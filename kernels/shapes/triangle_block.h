@@ -20,8 +20,8 @@ typedef struct {
 INLINE RayShear ray_shear(const Ray *r) {
     RayShear s;
     float ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
-    int x_major = (ax > ay) & (ax > az), y_major = !x_major & (ay > az);
-#define BY_MAJOR_AXIS(if_x, if_y, if_z) (x_major ? (if_x) : y_major ? (if_y) : (if_z))
+    int x_major = (ax > ay) & (ax > az), y_before_z = ay > az;
+#define BY_MAJOR_AXIS(if_x, if_y, if_z) (x_major ? (if_x) : y_before_z ? (if_y) : (if_z))
     s.kx = BY_MAJOR_AXIS(1u, 2u, 0u) * BLOCK_ROW_BYTES;
     s.ky = BY_MAJOR_AXIS(2u, 0u, 1u) * BLOCK_ROW_BYTES;
     s.kz = BY_MAJOR_AXIS(0u, 1u, 2u) * BLOCK_ROW_BYTES;

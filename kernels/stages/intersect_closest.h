@@ -62,7 +62,8 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
 INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
+        Ray r;
+        load_ray(&r, geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
         Hit hit = trace_closest(geometry, &r);
         set_slot(rays, PATH_T, i, hit.t);
         set_slot(rays, PATH_U, i, hit.u);

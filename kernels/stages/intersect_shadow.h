@@ -50,7 +50,8 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i++) {
-        Ray r = slot_ray(geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
+        Ray r;
+        load_ray(&r, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
         if (trace_any(geometry, &r)) continue;
         uint id = slot_uint(shadow, SHADOW_ID, i);
         for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[id] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);

@@ -20,6 +20,8 @@ kernel void load_surfaces(global struct BlockHeader *headers, global float *bloc
     uint n = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(rays, i);
+        // What a ray without a hit shows means nothing, but nothing outside of the scene is read for it.
+        path.hit = SELECT(path.hit == (UInt)HIT_NONE, (UInt)0u, path.hit);
         Surface s = load_surface(view, &path);
         Vec3 away = vec3(load(leave + i), load(leave + 4096u + i), load(leave + 8192u + i));
         STORE_VECTOR(0u, s.position);
