@@ -8,16 +8,6 @@ namespace {
 // Spatial splits and their time pay on scenes of this size; larger ones are built the fast way.
 constexpr std::size_t best_quality_triangles = 400000;
 
-// Measured on scenes of 100 thousand to 10 million triangles; used before the hierarchy exists.
-constexpr std::uint64_t hierarchy_bytes_per_primitive = 110;
-
-constexpr std::uint64_t hierarchy_bytes_per_instance = 50;
-
-template <class T>
-std::uint64_t bytes_of(const std::vector<T>& values) {
-    return values.size() * sizeof(T);
-}
-
 // Marks the primitives whose opacity rays ask for.
 void mark_masked(Bvh& bvh, const DeviceScene& scene) {
     const auto mark = [&scene](std::uint32_t& entry, std::size_t primitive) {
@@ -61,18 +51,6 @@ Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> c
     // Stages read block 0 in lanes that hit no triangle.
     if (bvh.blocks.empty()) bvh.blocks.emplace_back();
     return bvh;
-}
-
-std::uint64_t estimate_device_bytes(const DeviceScene& scene) {
-    const std::size_t sums = scene.features.layer_channels() + (scene.features.moments ? MOMENT_CHANNELS : 0);
-    const std::uint64_t film = std::uint64_t{scene.parameters.window_width} * scene.parameters.window_height *
-                               (sizeof(FilmPixel) + sums * sizeof(double));
-    return film + scene.primitive_shapes.size() * hierarchy_bytes_per_primitive + bytes_of(scene.primitive_shapes) +
-           bytes_of(scene.shapes) + bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.colors) +
-           bytes_of(scene.analytics) + scene.instances.size() * (sizeof(DeviceInstance) + hierarchy_bytes_per_instance) +
-           bytes_of(scene.materials) + bytes_of(scene.opacities) + bytes_of(scene.textures) +
-           bytes_of(scene.texels) + bytes_of(scene.media) + bytes_of(scene.shape_media) + bytes_of(scene.lights) + bytes_of(scene.light_tree) +
-           bytes_of(scene.environment_texels) + bytes_of(scene.environment_sums) + bytes_of(scene.environment_density);
 }
 
 void DeviceBuffers::insert(const std::string& name, Buffer buffer) {

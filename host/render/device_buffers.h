@@ -14,9 +14,6 @@ namespace wavelobe {
 // Writes the roots of the groups into the instances. Without a quality by the number of triangles.
 Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> quality = std::nullopt);
 
-// What the buffers of a scene will take, the hierarchy estimated from the number of primitives.
-std::uint64_t estimate_device_bytes(const DeviceScene& scene);
-
 class DeviceBuffers {
 public:
     explicit DeviceBuffers(const Device& device) : device_(device) {}

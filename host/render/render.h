@@ -101,6 +101,7 @@ struct RenderStats {
     std::vector<StageStats> stages;
     Replay replay;                              // with Driver::replay
     std::uint64_t device_bytes = 0;             // of all buffers
+    std::uint64_t expected_peak_bytes = 0;      // of the process, as it was estimated before
 
     double setup_seconds() const {
         double sum = 0.0;
@@ -138,6 +139,7 @@ struct SceneSummary {
     std::uint64_t lights = 0;
     std::vector<std::string> features;  // lobes, lights, textures ... compiled for it
     std::uint64_t device_bytes = 0;
+    std::uint64_t peak_bytes = 0;  // of the process
 };
 
 class Renderer {

@@ -10,6 +10,7 @@
 #include "cl/program.h"
 #include "render/driver.h"
 #include "render/flatten.h"
+#include "render/memory.h"
 #include "render/picture_channels.h"
 #include "scene/fault.h"
 
@@ -120,6 +121,9 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
           data.features.independent_samples = settings_in.sampler == Sampler::independent;
           data.features.error_estimate = settings_in.target_error > 0.0;
           refuse_large_film(device_in, data);
+          const MemoryEstimate memory = estimate_memory(scene, data);
+          refuse_beyond(memory, physical_memory());
+          stats.expected_peak_bytes = memory.peak_bytes;
           stats.setup_parts["tables"] = seconds_since(start);
           return data;
       }()),
@@ -232,8 +236,9 @@ std::string scene_program(const Scene& scene, const RenderSettings& settings) {
 
 SceneSummary summarize(const Scene& scene) {
     const DeviceScene data = flatten_scene(scene);
+    const MemoryEstimate memory = estimate_memory(scene, data);
     return {data.triangles.size(), data.analytics.size(), data.lights.size(), data.features.names(),
-            estimate_device_bytes(data)};
+            memory.device_bytes, memory.peak_bytes};
 }
 
 }  // namespace wavelobe
