@@ -92,7 +92,7 @@ int run(const SceneArguments& arguments, bool program) {
     fmt::print("materials   {}\n", format_kinds(materials));
     fmt::print("emitters    {}; lights to sample {}\n", format_kinds(emitters), format_count(summary.lights));
     fmt::print("features    {}\n", fmt::join(summary.features, " "));
-    fmt::print("memory      about {} at most, {} of them the kernels' buffers\n", format_bytes(summary.peak_bytes),
+    fmt::print("memory      about {} at most once kernels are compiled, {} of them their buffers\n", format_bytes(summary.peak_bytes),
                format_bytes(summary.device_bytes));
     return exit_ok;
 }

@@ -68,6 +68,7 @@ std::string report_json(const RenderReport& report) {
     json["rays"] = stats.rays;
     json["features"] = stats.features;
     json["device_bytes"] = stats.device_bytes;
+    json["expected_peak_bytes"] = stats.expected_peak_bytes;
     json["stages"] = Json::array();
     for (const StageStats& stage : stats.stages) {
         json["stages"].push_back({{"name", stage.name},

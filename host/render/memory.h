@@ -9,7 +9,7 @@ namespace wavelobe {
 
 struct MemoryEstimate {
     std::uint64_t device_bytes = 0;  // of the kernels' buffers
-    std::uint64_t peak_bytes = 0;    // of the process, at its largest: beside the buffers the scene itself, and what builds the hierarchy
+    std::uint64_t peak_bytes = 0;    // of the process at its largest, kernels compiled before: buffers, the scene itself, and what builds the hierarchy
 };
 
 MemoryEstimate estimate_memory(const Scene& scene, const DeviceScene& data);

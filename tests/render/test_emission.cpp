@@ -124,5 +124,27 @@ TEST(Emission, SamplingChangesNoMean) {
     }
 }
 
+// A mesh shines evenly over its faces: normals at its vertices shade what it reflects, and move nothing that it sends out.
+TEST(Emission, VertexNormalsMoveNoLight) {
+    const auto lit = [](bool smooth) {
+        Scene scene = empty_scene(32);
+        add_floor(scene, 1.0F, add_diffuse(scene, Rgb{0.5F}));
+        TriangleMesh octahedron;
+        for (const glm::vec3& p : {glm::vec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
+            if (smooth) octahedron.normals.push_back(p);
+            octahedron.positions.push_back(p + glm::vec3{0, 4, 0});
+        }
+        octahedron.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+        add_shape(scene, octahedron, add_diffuse(scene, Rgb{0}), "lamp").emitter = AreaEmitter{constant(Rgb{1})};
+        look_at_point(scene, {0.5F, 0.4F, 0}, {0, 0, 0});
+        scene.integrator.max_depth = 2;
+        return picture_mean(render(scene, 256).image);
+    };
+    const PictureMean smooth = lit(true), flat = lit(false);
+    const double tolerance = 4.5 * std::hypot(smooth.standard_error.x, flat.standard_error.x);
+    EXPECT_NEAR(smooth.mean.x, flat.mean.x, tolerance);
+    EXPECT_LT(tolerance, 0.02 * flat.mean.x);
+}
+
 }  // namespace
 }  // namespace wavelobe::test

@@ -1,4 +1,4 @@
-// Closed rooms in a bright environment: what they let in is light that passed their walls.
+// Closed rooms in a bright environment, and covered lamps: what they let through is light that passed their walls.
 #include <gtest/gtest.h>
 
 #include <tuple>
@@ -39,6 +39,20 @@ TEST_P(ClosedCube, LetsNothingIn) {
 INSTANTIATE_TEST_SUITE_P(All, ClosedCube, testing::Combine(testing::Values(1, 12), testing::Bool()), [](const auto& p) {
     return std::to_string(std::get<0>(p.param)) + (std::get<1>(p.param) ? "_turned" : "_aligned");
 });
+
+// Shadow rays see what covers a light however near to it: of the distance, a millionth here.
+TEST(LightLeaks, CoveredLampLightsNothing) {
+    Scene scene = empty_scene(16);
+    const int black = add_diffuse(scene, Rgb{0});
+    add_floor(scene, 1.0F, add_diffuse(scene, Rgb{0.5F}));
+    Shape& lamp = add_quad(scene, {-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, black);
+    lamp.emitter = AreaEmitter{constant(Rgb{1})};
+    look_at_point(scene, {0.5F, 0.4F, 0}, {0, 0, 0});
+    scene.integrator.max_depth = 2;
+    EXPECT_GT(picture_mean(render(scene, 16).image).mean.x, 0.01);
+    add_quad(scene, {-1.1F, 4.0F - 4e-6F, -1.1F}, {2.2F, 0, 0}, {0, 0, 2.2F}, black);
+    expect_every_pixel(render(scene, 64).image, glm::dvec3(0.0));
+}
 
 }  // namespace
 }  // namespace wavelobe::test
