@@ -15,10 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from common import comparable_scene, pin, run_wavelobe
-
-
-class Missing(Exception):
-    """A peer that cannot run here; the text says why."""
+from scene_facts import Missing
 
 
 def load_picture(path):
@@ -110,7 +107,13 @@ class MitsubaPeer:
         return time.perf_counter() - start, total
 
 
-PEERS = {"mitsuba": MitsubaPeer}
+def cycles_peer(setting, source, size, threads):
+    from cycles_peer import CyclesPeer
+
+    return CyclesPeer(comparable_scene(source, size, 1), threads)
+
+
+PEERS = {"mitsuba": MitsubaPeer, "cycles": cycles_peer}
 
 
 def peer_settings(names):
@@ -139,7 +142,10 @@ def worker(kind, setting, source, size, threads, picture):
     start = time.perf_counter()
     try:
         peer = PEERS[kind](setting, Path(source), int(size), int(threads))
-    except (ImportError, Missing) as error:
+    except ImportError as error:
+        say(missing=f"{error}; build/venv/bin/pip install brings mitsuba, and bpy for Cycles")
+        return
+    except Missing as error:
         say(missing=str(error))
         return
     say(version=peer.version, setup_seconds=time.perf_counter() - start)

@@ -23,7 +23,7 @@ MUTANTS = [
     ("cosine dropped from Lambert's value", "bsdf/lambert.h", "scale(l.diffuse, pdf)", "scale(l.diffuse, (Float)INV_PI)", LOBES),
     ("densities swapped in the MIS weight", "sampling/mis.h", "pdf_b / pdf_a", "pdf_a / pdf_b", SCENES),
     ("squared index forgotten in refraction", "bsdf/dielectric.h", "f.eta_ti * f.eta_ti", "ONE", LOBES),
-    ("half vector's Jacobian 1/2 for 1/4", "bsdf/rough_conductor.h", "0.25f * microfacet_density", "0.5f * microfacet_density", LOBES),
+    ("half vector's Jacobian 1/2 for 1/4", "bsdf/microfacet.h", "0.25f * microfacet_density", "0.5f * microfacet_density", LOBES),
     ("Phong normalised with n + 1", "bsdf/phong.h", "(l.exponent + 2.0f)", "(l.exponent + 1.0f)", LOBES),
     ("masking of the outgoing direction left out", "bsdf/microfacet.h", "g.both = 2.0f * inverse * wo.z", "g.both = g.visible", LOBES),
     ("Fresnel: polarizations not averaged", "bsdf/fresnel.h", "0.5f * madd(r_s, r_s, r_p * r_p)", "r_s * r_s", ["verify_test_fresnel_points"]),
