@@ -98,6 +98,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps);
+    out.define("HAS_VERTEX_TANGENTS", f.vertex_tangents);
     out.define("HAS_NORMAL_MAPS", f.normal_maps);
     out.define("HAS_BUMP_MAPS", f.bump_maps);
     out.define("HAS_NESTED_SIDES", f.nested_sides);
@@ -257,6 +258,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(analytic, "analytic_shapes");
     add(instances, "instances");
     add(anisotropy, "anisotropy");
+    add(vertex_tangents, "vertex_tangents");
     add(normal_maps, "normal_maps");
     add(bump_maps, "bump_maps");
     add(nested_sides, "nested_sides");

@@ -48,6 +48,7 @@ struct FeatureSet {
     bool unsampled_emitters = false; // some emission is found by paths alone
     bool analytic = false;
     bool instances = false;
+    bool vertex_tangents = false;    // some vertices have tangents of their own
     bool anisotropy = false;
     bool normal_maps = false;   // or bump maps
     bool bump_maps = false;

@@ -174,6 +174,11 @@ private:
             s.first_normal = vertex_offset(out_.normals.size(), shape);
             out_.features.smooth_normals = true;
         }
+        const bool tangents = !mesh.tangents.empty() && !mesh.normals.empty();
+        if (tangents) {
+            s.flags |= SHAPE_HAS_TANGENTS;
+            out_.features.vertex_tangents = true;
+        }
         add_vertex_coordinates(shape, mesh, s, out_);
         if (!mesh.colors.empty()) {
             s.first_color = vertex_offset(out_.colors.size(), shape);
@@ -188,6 +193,8 @@ private:
                 if (!mesh.normals.empty()) append(out_.normals, mesh.normals[vertex]);
                 if (!mesh.colors.empty()) append(out_.colors, mesh.colors[vertex]);
             }
+            if (!tangents) continue;
+            for (int corner = 0; corner < 3; ++corner) append(out_.normals, mesh.tangents[t[corner]]);
         }
         if (emits(shape)) {
             if (shape.emitter->sampled) lights_.add_mesh(*shape.emitter, mesh);

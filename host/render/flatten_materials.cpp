@@ -238,15 +238,17 @@ void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
     // A metal throughout has no base.
     const bool has_base = m.metallic.texture || m.metallic.value.x < 1.0F;
     const bool transmits = has_base && m.transmission.value.x > 0.0F;
-    if (transmits || m.clearcoat.value.x > 0.0F || m.specular.texture || m.specular_color.texture) {
+    const bool anisotropic = m.anisotropy.texture || m.anisotropy.value.z > 0.0F;
+    if (transmits || anisotropic || m.clearcoat.value.x > 0.0F || m.specular.texture || m.specular_color.texture) {
         out.lobes = bit(LOBE_LAYERED_METALLIC_ROUGHNESS);
         if (has_base) out.lobes |= bit(LOBE_LAYERED_METALLIC_ROUGHNESS_BASE);
+        out_.features.anisotropy = out_.features.anisotropy || anisotropic;
         if (transmits) out.flags |= MATERIAL_TRANSMISSIVE | MATERIAL_THIN;
         out.eta.x = 1.0F;
         Parameter f0 = m.specular_color;
         f0.value = reflectance;
         out.extension = add_extension(MetallicRoughnessLayers{scalar(m.clearcoat), scalar(m.clearcoat_roughness), scalar(m.transmission),
-                                                              scalar(m.specular), rgb(f0)});
+                                                              scalar(m.specular), rgb(f0), rgb(m.anisotropy)});
         return;
     }
     out.lobes = bit(LOBE_METALLIC_ROUGHNESS);

@@ -126,9 +126,12 @@ private:
         shape.material = appearance.surface;
         shape.emitter = appearance.emitter;
         shape.name = name;
-        if (appearance.has_normal_map) {
-            // The bitangent of a normal map goes with the winding of the texture coordinates.
-            TriangleMesh other = split_mirrored(prepared.mesh);
+        if (appearance.needs_tangents) {
+            // The bitangent goes with the handedness of the tangents, and without any with the winding of the texture coordinates.
+            add_tangents(primitive, to_world, prepared.mesh);
+            if (prepared.mesh.uvs.empty() && prepared.mesh.tangents.empty())
+                document_.warn(fmt::format("{}: {}: its material asks for tangents, and it has neither TANGENT nor texture coordinates", document_.file, primitive.path));
+            TriangleMesh other = split_mirrored(prepared.mesh, mirrored ? -1.0F : 1.0F, primitive.tangents);
             if (!other.triangles.empty()) {
                 Shape half = shape;
                 half.material = materials_.mirrored(primitive.material);
@@ -145,16 +148,27 @@ private:
         scene_.shapes.push_back(std::move(shape));
     }
 
-    // Takes the triangles whose texture coordinates run the other way round out of a mesh. Those of an image go down: seen from
-    // the front, triangles that are not mirrored turn against them.
-    static TriangleMesh split_mirrored(TriangleMesh& mesh) {
-        if (mesh.uvs.empty()) return {};
-        const auto turns_against = [&](const glm::uvec3& t) {
+    static void add_tangents(const Primitive& primitive, const glm::dmat4& to_world, TriangleMesh& mesh) {
+        if (mesh.normals.empty()) return;  // the specification has them ignored then
+        for (const glm::vec4& tangent : primitive.tangents) {
+            const glm::dvec3 world = glm::dmat3(to_world) * glm::dvec3(tangent);
+            const double length = glm::length(world);
+            mesh.tangents.push_back(length > 0.0 ? glm::vec3(world / length) : glm::vec3(0.0F));
+        }
+    }
+
+    // Takes the triangles whose tangents are left-handed out of a mesh; `side` is -1 where a mirrored node turns all of them over.
+    // Without tangents, those whose texture coordinates run the other way round. Those of an image go down: seen from the front,
+    // triangles that are not mirrored turn against them.
+    static TriangleMesh split_mirrored(TriangleMesh& mesh, float side, const std::vector<glm::vec4>& tangents) {
+        if (mesh.uvs.empty() && mesh.tangents.empty()) return {};
+        const auto is_right_handed = [&](const glm::uvec3& t) {
+            if (!mesh.tangents.empty()) return side * tangents[t.x].w >= 0.0F;
             const glm::dvec2 a = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
             const glm::dvec2 b = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
             return a.x * b.y - a.y * b.x <= 0.0;
         };
-        const auto middle = std::stable_partition(mesh.triangles.begin(), mesh.triangles.end(), turns_against);
+        const auto middle = std::stable_partition(mesh.triangles.begin(), mesh.triangles.end(), is_right_handed);
         if (middle == mesh.triangles.end()) return {};
         TriangleMesh other = mesh;
         other.triangles.assign(middle, mesh.triangles.end());

@@ -108,6 +108,8 @@ struct MetallicRoughness {
     Parameter specular_color{Rgb{1.0F}, nullptr};  // ... at normal incidence
     Parameter clearcoat{Rgb{0.0F}, nullptr};       // share of the surface under a clear coat of index 1.5
     Parameter clearcoat_roughness{Rgb{0.0F}, nullptr};
+    // Direction in the tangent frame as (d + 1) / 2, and strength: there the microfacets' alpha nears one by its square.
+    Parameter anisotropy{Rgb{1.0F, 0.5F, 0.0F}, nullptr};
     Parameter transmission{Rgb{0.0F}, nullptr};    // share of the base that lets light through, tinted by its colour
 };
 
@@ -184,6 +186,7 @@ struct TriangleMesh {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;
     std::vector<glm::vec2> uvs;
+    std::vector<glm::vec3> tangents;    // world space, empty (change of position along u) or one a vertex with a normal
     std::vector<glm::vec2> second_uvs;  // for textures that ask for them; empty: `uvs` serve
     std::vector<glm::vec3> colors;  // linear, empty or one a vertex; they scale MetallicRoughness::base_color
     std::vector<float> alphas;      // empty or one a vertex; they scale the opacity, before its cutoff

@@ -42,7 +42,7 @@ INLINE LobeValue layered_metallic_roughness_eval(LayeredMetallicRoughnessLobe lo
     LayerWeights w = layer_weights(l, wi.z);
     Float all = w.coat + w.surface + w.through;
     Float inverse = SELECT(all > 0.0f, 1.0f / all, ZERO);
-    MicrofacetReflection surface = microfacet_reflection(l.microfacets, wi, wo);
+    MicrofacetReflection surface = microfacet_reflection(l.microfacets, to_microfacets(l, wi), to_microfacets(l, wo));
     MicrofacetReflection coat = microfacet_reflection(l.coat_microfacets, wi, wo);
 
     Rgb reflected = scale(metallic_roughness_fresnel(l.material, surface.cos_m), coat_transmittance(l, surface.cos_m) * surface.value);
@@ -62,8 +62,9 @@ INLINE Vec3 layered_metallic_roughness_sample(LayeredMetallicRoughnessLobe lobe,
     Int coat = at < w.coat;
     Int through = !coat & !(at < w.coat + w.surface) & (w.through > 0.0f);
     Microfacets d = l.microfacets;
-    d.alpha_u = d.alpha_v = SELECT(coat, l.coat_microfacets.alpha_u, d.alpha_u);
-    Vec3 wo = sample_microfacet_reflection(d, wi, u1, u2);
+    d.alpha_u = SELECT(coat, l.coat_microfacets.alpha_u, d.alpha_u);
+    d.alpha_v = SELECT(coat, l.coat_microfacets.alpha_v, d.alpha_v);
+    Vec3 wo = from_microfacets(l, sample_microfacet_reflection(d, to_microfacets(l, wi), u1, u2));
     return turn_where(turned, turn_where(through, wo));
 }
 

@@ -1,6 +1,7 @@
 // Layers on and in glTF's metallic-roughness material: a clear coat over it (KHR_materials_clearcoat), a share of its base that
-// lets light through instead of scattering it (KHR_materials_transmission, thin walls), and textures of its dielectric's
-// reflectance (KHR_materials_specular). Khronos Group 2020-2021. Both lobes of such a material read them.
+// lets light through instead of scattering it (KHR_materials_transmission, thin walls), stretched highlights
+// (KHR_materials_anisotropy), and textures of its dielectric's reflectance (KHR_materials_specular). Khronos Group 2020-2023. Both
+// lobes of such a material read them.
 //
 // Deviations, which make the material reciprocal: the coat's Fresnel term is taken at the half vector, as that of the
 // dielectric below it is, not at the normal.
@@ -9,9 +10,17 @@
 
 #include "bsdf/metallic_roughness.h"
 
+// Whether some of the scene's materials have stretched highlights.
+#ifndef HAS_ANISOTROPY
+#define HAS_ANISOTROPY 1
+#endif
+
 typedef struct {
     MetallicRoughness material;
     Microfacets microfacets, coat_microfacets;
+#if HAS_ANISOTROPY
+    Float along_x, along_y; // unit: where the axis u of the microfacets points
+#endif
     Float coat;         // share of the surface under the coat
     Float transmission; // share of the base that lets light through
     Int two_sided;      // light passes, and both sides are alike
@@ -26,6 +35,26 @@ INLINE Microfacets rough_microfacets(Float roughness) {
 
 INLINE Float unit_share(Float x) { return LESSER(GREATER(x, ZERO), ONE); }
 
+#if HAS_ANISOTROPY
+INLINE void stretch_microfacets(Layered *l, Rgb a) {
+    Float x = madd((Float)2.0f, a.x, (Float)-1.0f), y = madd((Float)2.0f, a.y, (Float)-1.0f);
+    Float square = madd(x, x, y * y);
+    Int pointed = square > 0.0f;
+    Float inverse = 1.0f / sqrt(SELECT(pointed, square, ONE));
+    l->along_x = SELECT(pointed, x * inverse, ONE);
+    l->along_y = SELECT(pointed, y * inverse, ZERO);
+    Float strength = unit_share(a.z);
+    l->microfacets.alpha_u = madd(strength * strength, 1.0f - l->microfacets.alpha_v, l->microfacets.alpha_v);
+}
+
+// To the axes of the microfacets, and back.
+INLINE Vec3 to_microfacets(Layered l, Vec3 v) { return vec3(madd(l.along_x, v.x, l.along_y * v.y), madd(l.along_x, v.y, -l.along_y * v.x), v.z); }
+INLINE Vec3 from_microfacets(Layered l, Vec3 v) { return vec3(madd(l.along_x, v.x, -l.along_y * v.y), madd(l.along_x, v.y, l.along_y * v.x), v.z); }
+#else
+#define to_microfacets(l, v) (v)
+#define from_microfacets(l, v) (v)
+#endif
+
 INLINE Layered load_layered(MaterialInput in) {
     Layered l;
     l.material = load_metallic_roughness(in);
@@ -35,6 +64,9 @@ INLINE Layered load_layered(MaterialInput in) {
     Int there = (as_UInt(load_constant(in, lobes)) & (UInt)(1u << LOBE_LAYERED_METALLIC_ROUGHNESS)) != (UInt)0u;
 #endif
     MaterialInput layers = extension_of(in);
+#if HAS_ANISOTROPY
+    stretch_microfacets(&l, load_record_rgb(layers, there, MetallicRoughnessLayers, anisotropy));
+#endif
     l.coat = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat));
     l.coat_microfacets = rough_microfacets(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat_roughness));
     l.transmission = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, transmission));

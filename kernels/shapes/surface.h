@@ -109,6 +109,9 @@ typedef struct {
 #endif
 #if HAS_TANGENTS
     Vec3 dp_du, dp_dv; // change of position with them
+#if HAS_VERTEX_TANGENTS
+    Vec3 tangent; // of the vertices, otherwise the former
+#endif
 #endif
 #if HAS_VERTEX_COLORS
     Rgb color;
@@ -153,6 +156,26 @@ INLINE Vec3 interpolate(Vec3 a, Vec3 b, Vec3 c, Float wa, Float wb, Float wc) {
 
 INLINE Vec3 gather_vec3(global const float *p, UInt i) { return vec3(gather(p, i), gather(p + 1, i), gather(p + 2, i)); }
 
+#if HAS_VERTEX_TANGENTS
+#define SURFACE_TANGENT(surface) (surface).tangent
+
+INLINE Int has_tangents(SurfaceView s, UInt shape) {
+    return (GATHER_UINT_FIELD(s.shapes, Shape, shape, flags) & (UInt)SHAPE_HAS_TANGENTS) != (UInt)0u;
+}
+#define NORMAL_WORDS SELECT(has_tangents(s, out->shape), (UInt)18u, (UInt)9u)
+
+// `first` is the offset of the normals of the triangle.
+INLINE void load_tangent(SurfaceView s, UInt first, Float wa, Float wb, Float wc, Surface *out) {
+    Int there = has_tangents(s, out->shape);
+    UInt at = SELECT(there, first + (UInt)9u, (UInt)0u);
+    Vec3 t = interpolate(gather_vec3(s.normals, at), gather_vec3(s.normals + 3, at), gather_vec3(s.normals + 6, at), wa, wb, wc);
+    out->tangent = select3(there & (length_squared(t) > 0.0f), t, out->dp_du);
+}
+#else
+#define SURFACE_TANGENT(surface) (surface).dp_du
+#define NORMAL_WORDS 9u
+#endif
+
 INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
     UInt word = block_word(slot);
     Vec3 a = block_vertex(s, word, 0u), b = block_vertex(s, word, 1u), c = block_vertex(s, word, 2u);
@@ -169,7 +192,7 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     UInt first_normal = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_normal);
     Int smooth = first_normal != (UInt)WAVELOBE_NONE;
     if (any_lane(smooth)) {
-        UInt at = SELECT(smooth, first_normal + triangle * 9u, (UInt)0u);
+        UInt at = SELECT(smooth, first_normal + triangle * NORMAL_WORDS, (UInt)0u);
         Vec3 shading = interpolate(gather_vec3(s.normals, at), gather_vec3(s.normals + 3, at),
                                    gather_vec3(s.normals + 6, at), wa, wb, wc);
         Float square = length_squared(shading);
@@ -203,6 +226,9 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
 #if HAS_UVS
     triangle_tangents(s.uvs, first_uv, triangle, out->normal, &out->dp_du, &out->dp_dv);
 #endif
+#if HAS_VERTEX_TANGENTS
+    load_tangent(s, first_normal + triangle * NORMAL_WORDS, wa, wb, wc, out);
+#endif
 #endif
 }
 
@@ -232,6 +258,9 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
 #if HAS_TANGENTS
     out->dp_du = select3(analytic, h.dp_du, out->dp_du);
     out->dp_dv = select3(analytic, h.dp_dv, out->dp_dv);
+#if HAS_VERTEX_TANGENTS
+    out->tangent = select3(analytic, h.dp_du, out->tangent);
+#endif
 #endif
 }
 #endif
@@ -252,6 +281,9 @@ INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
 #if HAS_TANGENTS
     out->dp_du = select3(m.placed, instance_vector(&m, out->dp_du), out->dp_du);
     out->dp_dv = select3(m.placed, instance_vector(&m, out->dp_dv), out->dp_dv);
+#if HAS_VERTEX_TANGENTS
+    out->tangent = select3(m.placed, instance_vector(&m, out->tangent), out->tangent);
+#endif
 #endif
 }
 #endif
@@ -301,7 +333,7 @@ INLINE Surface load_geometry(SurfaceView s, const TracedPath *p) {
     place_surface(s, p->instance, &out);
 #endif
 #if HAS_TANGENTS
-    out.frame = frame_along(out.frame.n, out.dp_du);
+    out.frame = frame_along(out.frame.n, SURFACE_TANGENT(out));
 #else
     out.frame = frame_of_normal(out.frame.n);
 #endif

@@ -93,8 +93,9 @@ struct MetallicRoughnessLayers {
     struct TexturedFloat transmission;   // share of the base that lets light through
     struct TexturedFloat specular;       // reflectance of the dielectric at grazing incidence; scales that at normal incidence
     struct TexturedRgb specular_color;   // ... which is this, at most one
+    struct TexturedRgb anisotropy;       // direction of its highlights in the tangent frame as (d + 1) / 2, and strength; not scaled
 };
-WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 48);
+WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 64);
 // Principled materials: what Material has no room for.
 struct PrincipledParameters {
     struct TexturedFloat anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;

@@ -10,7 +10,8 @@ struct Shape {
     Uint32 front_material; // WAVELOBE_NONE: black
     Uint32 back_material;
     Uint32 first_primitive; // triangle id of its first triangle
-    Uint32 first_normal;    // offset into `normals`, in floats, of its first triangle; WAVELOBE_NONE: faceted
+    Uint32 first_normal;    // offset into `normals`, in floats, of its first triangle; WAVELOBE_NONE: faceted. 9 a triangle, and
+                            // of shapes with tangents another 9 for these
     Uint32 first_uv;        // offset into `uvs`; WAVELOBE_NONE: barycentric coordinates serve
     Uint32 first_second_uv; // the same of the second set; WAVELOBE_NONE: the first serves
     Uint32 first_color;     // offset into `colors`; WAVELOBE_NONE: white
@@ -32,6 +33,7 @@ WAVELOBE_CHECK_SIZE(Shape, 40);
 #define SHAPE_SIDED_BY_WINDING 512u // sides of unlike materials are told by the geometric normal
 #define SHAPE_EMITS_COLORED 256u // scaled by the colours of its vertices
 #define SHAPE_PARTS_MEDIA 1024u     // says which media are on its two sides
+#define SHAPE_HAS_TANGENTS 4096u    // of its vertices
 #define SHAPE_CLEAR 2048u           // parts media and is not there otherwise: rays go on behind it
 
 // Camera, film window, and the integrator's limits.

@@ -165,6 +165,8 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"coated_metal", layered(metallic_roughness(coloured, 1.0F, 0.8F), 0)},
           {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)},
           {"pane", layered(metallic_roughness(white, 0.0F, 0.4F), 2)},
+          {"brushed", layered(metallic_roughness(coloured, 1.0F, 0.3F), 4)},
+          {"brushed_pane", layered(metallic_roughness(coloured, 0.2F, 0.5F), 5)},
           {"smoothest_coat", layered(metallic_roughness(white, 0.0F, 0.0F), 3), 1e-4}}},
         {"layered_metallic_roughness_base",
          {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},

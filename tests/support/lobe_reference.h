@@ -90,10 +90,17 @@ struct GltfTerms {
     double pdf;
 };
 
-inline GltfTerms gltf_terms(::Material m, const glm::dvec3& wi, const glm::dvec3& wo) {
+inline GltfTerms gltf_terms(::Material m, glm::dvec3 wi, glm::dvec3 wo, const Packed3& anisotropy = unstretched) {
     const double alpha = std::max(static_cast<double>(m.alpha_u.value * m.alpha_u.value), 1e-4);
-    m.alpha_u.value = m.alpha_v.value = static_cast<float>(alpha);
+    // KHR_materials_anisotropy: the axis u turned to the direction, alpha there mix(alpha, 1, strength^2).
+    const double strength = anisotropy.z;
+    m.alpha_u.value = static_cast<float>(glm::mix(alpha, 1.0, strength * strength));
+    m.alpha_v.value = static_cast<float>(alpha);
     m.flags = 0;
+    const glm::dvec2 t = glm::normalize(2.0 * glm::dvec2(anisotropy.x, anisotropy.y) - 1.0);
+    const glm::dmat3 turn(glm::dvec3(t.x, -t.y, 0), glm::dvec3(t.y, t.x, 0), glm::dvec3(0, 0, 1));
+    wi = turn * wi;
+    wo = turn * wo;
     const glm::dvec3 h = glm::normalize(wi + wo);
     const double d = reference_density(m, h);
     const double v = reference_masking(m, wi, true) * reference_masking(m, wo, true) / (4.0 * wi.z * wo.z);
@@ -139,7 +146,7 @@ inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3
         if (wo.z < 0.0) t.through = true, wo.z = -wo.z;
     }
     if (wi.z <= 0.0 || wo.z <= 0.0) return {};
-    t.surface = gltf_terms(m, wi, wo);
+    t.surface = gltf_terms(m, wi, wo, t.layers.anisotropy.value);
     ::Material coat = m;
     coat.alpha_u.value = t.layers.coat_roughness.value;
     t.coat = gltf_terms(coat, wi, wo);

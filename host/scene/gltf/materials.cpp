@@ -26,6 +26,43 @@ double mean(const Parameter& p) {
     return static_cast<double>(p.value.x) * sum / (static_cast<double>(bitmap.rgb.size()) / 3.0);
 }
 
+// Across the tangent: the second of two coordinates, stored as (y + 1) / 2.
+void turn_over(Parameter& parameter) {
+    parameter.value.y = 1.0F - parameter.value.y;
+    if (!parameter.texture) return;
+    auto texture = std::make_shared<Texture>(*parameter.texture);
+    std::vector<float>& rgb = std::get<Bitmap>(texture->source).rgb;
+    for (std::size_t i = 1; i < rgb.size(); i += 3) rgb[i] = 1.0F - rgb[i];
+    parameter.texture = std::move(texture);
+}
+
+bool turn_over(NestedMaterial& nested);
+
+// All that a material says of the tangent frame; whether that is anything.
+bool turn_over(Material& material) {
+    if (auto* map = std::get_if<NormalMapped>(&material.model)) {
+        turn_over(map->normals);
+        turn_over(map->nested);
+        return true;
+    }
+    if (auto* sides = std::get_if<TwoSided>(&material.model)) {
+        const bool turned = turn_over(sides->front);
+        sides->back = sides->front;
+        return turned;
+    }
+    auto* layers = std::get_if<MetallicRoughness>(&material.model);
+    if (layers == nullptr || layers->anisotropy.value.z == 0.0F) return false;
+    turn_over(layers->anisotropy);
+    return true;
+}
+
+bool turn_over(NestedMaterial& nested) {
+    auto turned = std::make_shared<Material>(*nested);
+    if (!turn_over(*turned)) return false;
+    nested = std::move(turned);
+    return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const Texture> Materials::take(const Element& owner, const char* name, Transfer transfer, Appearance& out, const Rgb& factor) {
@@ -156,9 +193,8 @@ MaterialModel Materials::read_model(const Element& material, Appearance& out) {
 }
 
 void Materials::name_what_is_left_out(const Element& material) {
-    for (const char* name : {"KHR_materials_sheen", "KHR_materials_anisotropy"})
-        if (material.extension(name).present())
-            document_.warn(fmt::format("{}: {}: {} is passed over", document_.file, material.path(), name));
+    if (material.extension("KHR_materials_sheen").present())
+        document_.warn(fmt::format("{}: {}: KHR_materials_sheen is passed over", document_.file, material.path()));
     const Element occlusion = material.object("occlusionTexture");
     if (occlusion.present()) {
         occlusion.index("index", document_.textures.size(), "textures");
@@ -175,6 +211,27 @@ NormalMapped Materials::read_normal_map(const Element& material, Appearance& out
     return map;
 }
 
+// Its direction is in the same tangent frame.
+Parameter Materials::read_anisotropy(const Element& material, Appearance& out) {
+    const Element anisotropy = material.extension("KHR_materials_anisotropy");
+    const auto strength = static_cast<float>(anisotropy.number("anisotropyStrength", 0.0, unit));
+    const double rotation = anisotropy.number("anisotropyRotation", 0.0);
+    const auto texture = take(anisotropy, "anisotropyTexture", Transfer::linear, out);
+    const auto c = static_cast<float>(std::cos(rotation)), s = static_cast<float>(std::sin(rotation));
+    Parameter direction{{0.5F + 0.5F * c, 0.5F + 0.5F * s, strength}, nullptr};
+    if (!texture || strength == 0.0F) return direction;
+    auto turned = std::make_shared<Texture>(*texture);
+    std::vector<float>& rgb = std::get<Bitmap>(turned->source).rgb;
+    for (std::size_t i = 0; i + 2 < rgb.size(); i += 3) {
+        const float x = rgb[i] - 0.5F, y = rgb[i + 1] - 0.5F;
+        rgb[i] = 0.5F + c * x - s * y;
+        rgb[i + 1] = 0.5F + s * x + c * y;
+        rgb[i + 2] *= strength;
+    }
+    direction.texture = std::move(turned);
+    return direction;
+}
+
 int Materials::add(MaterialModel model, const std::string& name) {
     scene_.materials.push_back({std::move(model), name});
     return static_cast<int>(scene_.materials.size()) - 1;
@@ -183,16 +240,22 @@ int Materials::add(MaterialModel model, const std::string& name) {
 Appearance Materials::read(const Element& material) {
     Appearance out;
     NormalMapped map = read_normal_map(material, out);
+    const Parameter anisotropy = read_anisotropy(material, out);
     MaterialModel model = read_model(material, out);
+    auto* layers = std::get_if<MetallicRoughness>(&model);
+    const bool stretched = anisotropy.value.z > 0.0F;
+    if (layers != nullptr) layers->anisotropy = anisotropy;
+    else if (stretched) document_.warn(fmt::format("{}: {}: light that goes through a volume is spread alike in all directions", document_.file, material.path()));
     if (!material.extension("KHR_materials_unlit").present()) read_emission(material, out);
     name_what_is_left_out(material);
     // What lets light through needs both of its sides.
-    const auto* opaque = std::get_if<MetallicRoughness>(&model);
+    const auto* opaque = layers;
     const bool unlit = std::holds_alternative<Diffuse>(model);
     out.single_sided = !material.flag("doubleSided", false) && (unlit || (opaque != nullptr && opaque->transmission.value.x == 0.0F));
     const std::string name = material.text("name", "material");
-    out.has_normal_map = map.normals.texture != nullptr && !unlit;
-    if (out.has_normal_map) {
+    const bool has_normal_map = map.normals.texture != nullptr && !unlit;
+    out.needs_tangents = has_normal_map || (opaque != nullptr && stretched);
+    if (has_normal_map) {
         // Maps keep their frame when seen from behind; two sides inside turn it.
         const bool transmits = opaque == nullptr || opaque->transmission.value.x > 0.0F;
         map.nested = std::make_shared<Material>(Material{std::move(model), name});
@@ -206,13 +269,9 @@ Appearance Materials::read(const Element& material) {
 const SurfaceMaterial& Materials::mirrored(std::optional<std::size_t> material) {
     const auto [found, added] = mirrored_.try_emplace(material.value_or(default_material), appearance(material).surface);
     if (!added) return found->second;
-    const Material& straight = scene_.materials[static_cast<std::size_t>(found->second.front)];
-    NormalMapped map = std::get<NormalMapped>(straight.model);
-    auto texture = std::make_shared<Texture>(*map.normals.texture);
-    std::vector<float>& rgb = std::get<Bitmap>(texture->source).rgb;
-    for (std::size_t i = 1; i < rgb.size(); i += 3) rgb[i] = 1.0F - rgb[i];
-    map.normals.texture = std::move(texture);
-    found->second.front = found->second.back = add(std::move(map), std::string(straight.name));
+    Material turned = scene_.materials[static_cast<std::size_t>(found->second.front)];
+    turn_over(turned);
+    found->second.front = found->second.back = add(std::move(turned.model), turned.name);
     return found->second;
 }
 

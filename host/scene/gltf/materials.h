@@ -11,7 +11,7 @@ namespace wavelobe::gltf {
 struct Appearance {
     SurfaceMaterial surface;
     std::optional<AreaEmitter> emitter;
-    bool has_normal_map = false;
+    bool needs_tangents = false;  // for a normal map, or stretched highlights
     bool single_sided = false;  // its back is not shown
     bool is_volume = false;     // light goes on inside of it
     int medium = -1;            // that absorbs there
@@ -28,12 +28,13 @@ public:
     // The material of that number, or the specification's default.
     const Appearance& appearance(std::optional<std::size_t> material);
 
-    // What triangles with mirrored texture coordinates show of a material with a normal map: its green turned over.
+    // What triangles with mirrored tangents show of a material that needs them: turned over across them.
     const SurfaceMaterial& mirrored(std::optional<std::size_t> material);
 
 private:
     Appearance read(const Element& material);
     NormalMapped read_normal_map(const Element& material, Appearance& out);
+    Parameter read_anisotropy(const Element& material, Appearance& out);
     int add(MaterialModel model, const std::string& name);
     void read_emission(const Element& material, Appearance& out);
     void read_alpha(const Element& material, float factor, Appearance& out);

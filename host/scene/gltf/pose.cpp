@@ -84,7 +84,12 @@ void bend(Document& document, const std::vector<glm::dmat4>& joints, const std::
         primitive.mesh.positions[i] = glm::vec3(sum * glm::dvec4(glm::dvec3(primitive.mesh.positions[i]), 1.0));
         if (primitive.mesh.normals.empty()) continue;
         const glm::dmat3 linear(sum);
-        if (std::abs(glm::determinant(linear)) > 0.0)
+        const double determinant = glm::determinant(linear);
+        if (!primitive.tangents.empty()) {
+            glm::vec4& tangent = primitive.tangents[i];
+            tangent = glm::vec4(glm::vec3(linear * glm::dvec3(tangent)), determinant < 0.0 ? -tangent.w : tangent.w);
+        }
+        if (std::abs(determinant) > 0.0)
             primitive.mesh.normals[i] = glm::vec3(glm::transpose(glm::inverse(linear)) * glm::dvec3(primitive.mesh.normals[i]));
     }
 }
