@@ -44,7 +44,7 @@ std::uint64_t mesh_bytes(const std::vector<Shape>& shapes) {
     for (const Shape& shape : shapes) {
         const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
         if (mesh == nullptr) continue;
-        sum += bytes_of(mesh->positions) + bytes_of(mesh->normals) + bytes_of(mesh->uvs) + bytes_of(mesh->second_uvs) +
+        sum += bytes_of(mesh->positions) + bytes_of(mesh->normals) + bytes_of(mesh->tangents) + bytes_of(mesh->uvs) + bytes_of(mesh->second_uvs) +
                bytes_of(mesh->colors) + bytes_of(mesh->alphas) + bytes_of(mesh->triangles);
     }
     return sum;
