@@ -90,8 +90,7 @@ Tally tally(LobeProbe& probe, const std::vector<Material>& materials, const Case
     double sum = 0.0;
     double sum_of_squares = 0.0;
     for (const LobeSample& s : probe.sample(materials, queries)) {
-        // A direction on the horizon carries nothing: its cosine and its density are zero.
-        const bool failed = s.wo == glm::vec3{0.0F} || (s.wo.z == 0.0F && s.value.pdf == 0.0F);
+        const bool failed = s.wo == glm::vec3{0.0F};
         const std::size_t bin = failed ? c.grid.size() : c.grid.index_of(s.wo);
         result.counts[bin] += 1.0;
         if (bin == c.grid.size()) continue;
