@@ -8,9 +8,9 @@
 #include "render/flatten_lights.h"
 #include "render/flatten_materials.h"
 #include "render/flatten_media.h"
-#include "scene/presence.h"
 #include "render/vertex_coordinates.h"
 #include "scene/fault.h"
+#include "scene/presence.h"
 #include "tables/filter_table.h"
 
 namespace wavelobe {

@@ -60,6 +60,16 @@ float layer_film_step(const RenderSettings& settings) {
     return open_end ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
 }
 
+// The scene as the device has it, with what the settings ask of its kernels.
+DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
+    DeviceScene data = flatten_scene(scene, settings.estimator);
+    data.parameters.seed = settings.seed;
+    data.parameters.layer_film_step = layer_film_step(settings);
+    data.features.independent_samples = settings.sampler == Sampler::independent;
+    data.features.error_estimate = settings.target_error > 0.0;
+    return data;
+}
+
 struct TraversalData {
     Bvh bvh;
     FewTriangleSet few;  // empty where the hierarchy is to be walked
@@ -115,11 +125,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       slots(slots_of(settings_in)),
       scene_data([&] {
           const auto start = Clock::now();
-          DeviceScene data = flatten_scene(scene, settings_in.estimator);
-          data.parameters.seed = settings_in.seed;
-          data.parameters.layer_film_step = layer_film_step(settings_in);
-          data.features.independent_samples = settings_in.sampler == Sampler::independent;
-          data.features.error_estimate = settings_in.target_error > 0.0;
+          DeviceScene data = device_scene(scene, settings_in);
           refuse_large_film(device_in, data);
           const MemoryEstimate memory = estimate_memory(scene, data);
           refuse_beyond(memory, physical_memory());
@@ -229,7 +235,7 @@ Image Renderer::image() const {
 }
 
 std::string scene_program(const Scene& scene, const RenderSettings& settings) {
-    DeviceScene data = flatten_scene(scene, settings.estimator);
+    DeviceScene data = device_scene(scene, settings);
     build_traversal(data, static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U)), settings);
     return flatten_includes(program_source(data.features, settings.lanes, slots_of(settings), settings.driver), "scene.cl");
 }

@@ -65,7 +65,8 @@ INLINE uint slot_key(Geometry g, Block block, Queue q, uint direction, uint path
 #endif
 
 // The ray of slot i; the others are the queue's fields for its parts.
-INLINE void load_ray(Ray *out, Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint from, uint path, uint i) {
+INLINE void load_ray(Ray *out, Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint from, uint path,
+                     uint i) {
     Ray r = {
         slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
         slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),

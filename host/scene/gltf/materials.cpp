@@ -129,7 +129,8 @@ void Materials::read_layers(const Element& material, MetallicRoughness& model, A
 std::optional<MaterialModel> Materials::read_volume(const Element& material, const MetallicRoughness& surface, Appearance& out) {
     const Element volume = material.extension("KHR_materials_volume");
     const Rgb absorption = absorption_of(volume);
-    const Parameter depth{Rgb(static_cast<float>(volume.number("thicknessFactor", 0.0, positive))), textures_.use(volume.object("thicknessTexture"), Transfer::linear, Rgb(1.0F), false), 1};
+    const auto factor = static_cast<float>(volume.number("thicknessFactor", 0.0, positive));
+    const Parameter depth{Rgb(factor), textures_.use(volume.object("thicknessTexture"), Transfer::linear, Rgb(1.0F), false), 1};
     const double thickness = mean(depth);
     const double share = mean(surface.transmission);
     if (thickness == 0.0 || share == 0.0) return {};
@@ -244,20 +245,23 @@ Appearance Materials::read(const Element& material) {
     MaterialModel model = read_model(material, out);
     auto* layers = std::get_if<MetallicRoughness>(&model);
     const bool stretched = anisotropy.value.z > 0.0F;
-    if (layers != nullptr) layers->anisotropy = anisotropy;
-    else if (stretched) document_.warn(fmt::format("{}: {}: light that goes through a volume is spread alike in all directions", document_.file, material.path()));
+    if (layers != nullptr) {
+        layers->anisotropy = anisotropy;
+    } else if (stretched) {
+        document_.warn(fmt::format("{}: {}: light that goes through a volume is spread alike in all directions", document_.file,
+                                   material.path()));
+    }
     if (!material.extension("KHR_materials_unlit").present()) read_emission(material, out);
     name_what_is_left_out(material);
     // What lets light through needs both of its sides.
-    const auto* opaque = layers;
     const bool unlit = std::holds_alternative<Diffuse>(model);
-    out.single_sided = !material.flag("doubleSided", false) && (unlit || (opaque != nullptr && opaque->transmission.value.x == 0.0F));
+    out.single_sided = !material.flag("doubleSided", false) && (unlit || (layers != nullptr && layers->transmission.value.x == 0.0F));
     const std::string name = material.text("name", "material");
     const bool has_normal_map = map.normals.texture != nullptr && !unlit;
-    out.needs_tangents = has_normal_map || (opaque != nullptr && stretched);
+    out.needs_tangents = has_normal_map || (layers != nullptr && stretched);
     if (has_normal_map) {
         // Maps keep their frame when seen from behind; two sides inside turn it.
-        const bool transmits = opaque == nullptr || opaque->transmission.value.x > 0.0F;
+        const bool transmits = layers == nullptr || layers->transmission.value.x > 0.0F;
         map.nested = std::make_shared<Material>(Material{std::move(model), name});
         if (!transmits) map.nested = std::make_shared<Material>(Material{TwoSided{map.nested, map.nested}, name});
         model = std::move(map);
