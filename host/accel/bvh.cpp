@@ -276,6 +276,12 @@ double half_area(const glm::dvec3& lower, const glm::dvec3& upper) {
 
 }  // namespace
 
+int walks_in_turn(const Bvh& bvh) {
+    // Measured on hierarchies of 2 to 580 MB: below 12 MB one ray at a time is faster, from 24 MB on eight are.
+    constexpr std::size_t stays_in_caches = std::size_t{16} << 20U;
+    return bvh.nodes.size() * sizeof(BvhNode) + bvh.blocks.size() * sizeof(TriangleBlock) > stays_in_caches ? 8 : 1;
+}
+
 double expected_steps(const Bvh& bvh) {
     double children = 0.0;
     glm::dvec3 lower(std::numeric_limits<double>::infinity());

@@ -41,6 +41,10 @@ enum class BvhQuality { fast, split, best };
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
               int threads, std::span<const Bounds> instance_bounds = {});
 
+// How many rays without anything in common are best traced in turn (kernels/shapes/walks.h): several through a hierarchy that
+// does not stay in the caches, else one.
+int walks_in_turn(const Bvh& bvh);
+
 // Nodes and blocks that a random line through the root's bounds is expected to meet (Goldsmith, Salmon 1987, "Automatic
 // Creation of Object Hierarchies for Ray Tracing"): both take about as long.
 double expected_steps(const Bvh& bvh);

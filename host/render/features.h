@@ -78,6 +78,7 @@ struct FeatureSet {
     bool light_tree = false;   // several lights with a place: chosen by a tree
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
+    int walks = 1;               // rays that are traced in turn
 
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;

@@ -52,6 +52,7 @@ struct RenderSettings {
     Sampler sampler = Sampler::sobol;
     std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
     bool always_hierarchy = false;  // even where testing all triangles is faster
+    int walks_in_turn = 0;          // rays traced in turn; 0: by the size of the hierarchy
     SampleName replayed;            // with Driver::replay
     int lanes = 16;        // width of the stage bodies: 1, 8 or 16; all give the same bits
 };

@@ -151,6 +151,13 @@ INLINE uint lowest_bit(uint bits) {
 #endif
 }
 
+// Asks for a line of memory that will be read soon; where there is no such instruction, waiting for it is the way.
+INLINE void fetch_line(ulong address) {
+#if !defined(__SPIR__) && __has_builtin(__builtin_prefetch)
+    __builtin_prefetch((const void *)address);
+#endif
+}
+
 // ---- unaligned access to LANES consecutive values ------------------------------------------------
 
 typedef Float __attribute__((aligned(4))) FloatUnaligned;

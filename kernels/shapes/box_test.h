@@ -23,7 +23,6 @@ typedef struct {
 
 #define NODE_ROW_BYTES 32u
 #define NODE_CHILD_BYTES 192u
-#define NODE_SHIFT 8u
 #define FAR_WIDENING (1.0f + 2.0f * GAMMA(3))
 
 // A component of a unit direction this small moves a ray by less than the smallest step of any coordinate; keeping its

@@ -1,5 +1,6 @@
-// Rays of a group whose directions agree in their signs and their largest axis, as a packet: what they have in common, and
-// the tests of one box and one triangle against all of them at once (shapes/trace_groups.h has the traversal).
+// Rays of a group as a packet: what they have in common, and the tests of one box and one triangle against all of them at
+// once (shapes/trace_groups.h has the traversal). They may agree in the signs and in the largest axis of their directions,
+// or be mixed, which costs some more.
 #ifndef WAVELOBE_SHAPES_PACKET_H
 #define WAVELOBE_SHAPES_PACKET_H
 
@@ -10,6 +11,7 @@
 #if HAS_PACKETS
 
 #define LEAST_PACKET (LANES / 2u) // fewer rays are not worth the set-up
+#define MOST_SPREAD 1.0f           // rays farther apart have too little in common to be mixed
 
 #define TEST_VALUES Float
 #define TEST_MASK Int
@@ -43,11 +45,19 @@ typedef struct {
 
 // ---- what the rays of a packet have in common -----------------------------------------------------------
 
+#define MIXED_X 1u // axes along which some rays go up and others down
+#define MIXED_Y 2u
+#define MIXED_Z 4u
+#define MIXED_SIGNS (MIXED_X | MIXED_Y | MIXED_Z)
+#define MIXED_AXES 8u // rays differ in their largest axis
+
 typedef struct {
     uint rays;   // bits of those that are in it
+    uint mixed;  // bits as above
     BoxTest all; // of all of them, by intervals
     Vec3 origin, reciprocal, widened; // of each
-    uint kx, ky, kz;                  // byte offsets of the permuted axes in a vertex
+    Int x_major, y_major;             // of each
+    uint kx, ky, kz;                  // byte offsets of the permuted axes in a vertex, unless axes are mixed
     Vec3 permuted;                    // origins, axes permuted
     Float shear_x, shear_y, shear_z;
 } Packet;
@@ -65,60 +75,112 @@ INLINE float least_lane(Float v) {
 
 INLINE float greatest_lane(Float v) { return -least_lane(-v); }
 
-// Bounds of an axis for all rays: the nearer and farther end of the origins, and of the reciprocals.
-INLINE void bound_axis(Int in, uint negative, Float origin, Float reciprocal, float *near_origin, float *far_origin, float *near,
+INLINE float least_of(uint rays, Float v) { return least_lane(SELECT(mask_of_bits(rays), v, (Float)INFINITY)); }
+
+// Bounds of an axis for all rays: the nearer and farther end of the origins, and of the reciprocals. The distance to a plane
+// ahead is at least that from the origin nearest to it at the greatest speed. (A plane behind gets a wrong, but still
+// negative, distance.)
+//
+// Along a mixed axis both rows of a node are near ones: that of the lower side for rays that go up, that of the upper side
+// for the others. There is no far one, as some ray may hardly move along it.
+INLINE void bound_axis(uint rays, uint down, Float origin, Float reciprocal, float *near_origin, float *far_origin, float *near,
                        float *far) {
-    float low = least_lane(SELECT(in, origin, (Float)INFINITY)), high = greatest_lane(SELECT(in, origin, (Float)-INFINITY));
-    float least = least_lane(SELECT(in, fabs(reciprocal), (Float)INFINITY));
-    float greatest = greatest_lane(SELECT(in, fabs(reciprocal), ZERO));
-    // The distance to a plane ahead is at least that from the origin nearest to it at the greatest speed. (A plane behind
-    // gets a wrong, but still negative, distance.)
-    *near_origin = negative ? low : high;
-    *far_origin = negative ? high : low;
-    *near = negative ? -least : least;
-    *far = (negative ? -greatest : greatest) * FAR_WIDENING;
+    float low = least_of(rays, origin), high = -least_of(rays, -origin);
+    Float size = fabs(reciprocal);
+    if (down == 0u || down == rays) {
+        float sign = down ? -1.0f : 1.0f;
+        *near_origin = down ? low : high;
+        *far_origin = down ? high : low;
+        *near = sign * least_of(rays, size);
+        *far = sign * -least_of(rays, -size) * FAR_WIDENING;
+    } else {
+        *near_origin = high;
+        *far_origin = low;
+        *near = least_of(rays & ~down, size);
+        *far = -least_of(down, size);
+    }
 }
 
-// The packet of those of the rays `left` that are like the first of them; the others, and all if the packet came out too
-// small, stay out of it.
-INLINE Packet make_packet(const RayGroup *g, uint left) {
+#define BY_AXIS(x_axis, y_axis, if_x, if_y, if_z) ((x_axis) ? (if_x) : (y_axis) ? (if_y) : (if_z))
+
+// How triangles are sheared for each ray, as ray_shear does for one.
+INLINE void shear_packet(Packet *p, Vec3 d) {
+    Vec3 o = p->origin;
+    Int x = p->x_major, y = p->y_major;
+    p->permuted = vec3(BY_AXIS(x, y, o.y, o.z, o.x), BY_AXIS(x, y, o.z, o.x, o.y), BY_AXIS(x, y, o.x, o.y, o.z));
+    p->shear_z = 1.0f / BY_AXIS(x, y, d.x, d.y, d.z);
+    p->shear_x = BY_AXIS(x, y, d.y, d.z, d.x) * p->shear_z;
+    p->shear_y = BY_AXIS(x, y, d.z, d.x, d.y) * p->shear_z;
+    uint first_x = lane_bits(x) >> lowest_bit(p->rays) & 1u, first_y = lane_bits(y) >> lowest_bit(p->rays) & 1u;
+    p->kx = BY_AXIS(first_x, first_y, 1u, 2u, 0u) * BLOCK_ROW_BYTES;
+    p->ky = BY_AXIS(first_x, first_y, 2u, 0u, 1u) * BLOCK_ROW_BYTES;
+    p->kz = BY_AXIS(first_x, first_y, 0u, 1u, 2u) * BLOCK_ROW_BYTES;
+}
+
+// The widest extent of a vector's components.
+INLINE float widest(uint rays, Vec3 v) {
+    float x = -least_of(rays, -v.x) - least_of(rays, v.x), y = -least_of(rays, -v.y) - least_of(rays, v.y);
+    return max(max(x, y), -least_of(rays, -v.z) - least_of(rays, v.z));
+}
+
+// How far apart rays are: how much their directions differ, and their origins for their lengths.
+INLINE float spread(uint rays, Vec3 d, Vec3 origin, Float limit) {
+    return widest(rays, d) + widest(rays, origin) / least_of(rays, limit);
+}
+
+// The packet of those of the rays `left` that are like the first of them or, where they may be mixed and are not too far apart,
+// of all. The others, and all if the packet came out too small, stay out of it.
+INLINE Packet make_packet(const RayGroup *g, uint left, int may_mix) {
     Packet p;
     Vec3 d = vec3(LANES_OF(g->dx), LANES_OF(g->dy), LANES_OF(g->dz));
     p.origin = vec3(LANES_OF(g->ox), LANES_OF(g->oy), LANES_OF(g->oz));
     p.reciprocal = vec3(reciprocal_lanes(d.x), reciprocal_lanes(d.y), reciprocal_lanes(d.z));
     Vec3 size = absolute(d);
     // As ray_shear chooses.
-    Int x_major = (size.x > size.y) & (size.x > size.z), y_major = !x_major & (size.y > size.z);
+    p.x_major = (size.x > size.y) & (size.x > size.z), p.y_major = !p.x_major & (size.y > size.z);
     uint xs = lane_bits(p.reciprocal.x < 0.0f), ys = lane_bits(p.reciprocal.y < 0.0f), zs = lane_bits(p.reciprocal.z < 0.0f);
-    uint xm = lane_bits(x_major), ym = lane_bits(y_major);
+    uint xm = lane_bits(p.x_major), ym = lane_bits(p.y_major);
     uint first = lowest_bit(left);
 #define LIKE_FIRST(bits) ((((bits) >> first) & 1u) ? (bits) : ~(bits))
-    p.rays = left & LIKE_FIRST(xs) & LIKE_FIRST(ys) & LIKE_FIRST(zs) & LIKE_FIRST(xm) & LIKE_FIRST(ym);
-#undef LIKE_FIRST
+    uint alike = LIKE_FIRST(xs) & LIKE_FIRST(ys) & LIKE_FIRST(zs) & LIKE_FIRST(xm) & LIKE_FIRST(ym);
+    int mix = may_mix && (left & ~alike) && spread(left, d, p.origin, LANES_OF(g->limit)) < MOST_SPREAD;
+    p.rays = mix ? left : left & alike;
+    p.mixed = 0u;
     if (popcount(p.rays) < LEAST_PACKET) return p;
-    uint sx = (xs >> first) & 1u, sy = (ys >> first) & 1u, sz = (zs >> first) & 1u;
-    Int in = mask_of_bits(p.rays);
+    if (mix) {
+        p.mixed = (left & ~LIKE_FIRST(xs) ? MIXED_X : 0u) | (left & ~LIKE_FIRST(ys) ? MIXED_Y : 0u) |
+                  (left & ~LIKE_FIRST(zs) ? MIXED_Z : 0u) | (left & ~(LIKE_FIRST(xm) & LIKE_FIRST(ym)) ? MIXED_AXES : 0u);
+    }
+#undef LIKE_FIRST
     BoxTest *b = &p.all;
-    bound_axis(in, sx, p.origin.x, p.reciprocal.x, &b->near_ox, &b->far_ox, &b->near_x, &b->far_x);
-    bound_axis(in, sy, p.origin.y, p.reciprocal.y, &b->near_oy, &b->far_oy, &b->near_y, &b->far_y);
-    bound_axis(in, sz, p.origin.z, p.reciprocal.z, &b->near_oz, &b->far_oz, &b->near_z, &b->far_z);
-    choose_rows(b, sx, sy, sz);
+    xs &= p.rays, ys &= p.rays, zs &= p.rays;
+    bound_axis(p.rays, xs, p.origin.x, p.reciprocal.x, &b->near_ox, &b->far_ox, &b->near_x, &b->far_x);
+    bound_axis(p.rays, ys, p.origin.y, p.reciprocal.y, &b->near_oy, &b->far_oy, &b->near_y, &b->far_y);
+    bound_axis(p.rays, zs, p.origin.z, p.reciprocal.z, &b->near_oz, &b->far_oz, &b->near_z, &b->far_z);
+    choose_rows(b, xs == p.rays, ys == p.rays, zs == p.rays);
     p.widened = scale(p.reciprocal, (Float)FAR_WIDENING);
-    uint x_axis = (xm >> first) & 1u, y_axis = (ym >> first) & 1u;
-#define BY_AXIS(if_x, if_y, if_z) (x_axis ? (if_x) : y_axis ? (if_y) : (if_z))
-    p.kx = BY_AXIS(1u, 2u, 0u) * BLOCK_ROW_BYTES;
-    p.ky = BY_AXIS(2u, 0u, 1u) * BLOCK_ROW_BYTES;
-    p.kz = BY_AXIS(0u, 1u, 2u) * BLOCK_ROW_BYTES;
-    p.permuted = vec3(BY_AXIS(p.origin.y, p.origin.z, p.origin.x), BY_AXIS(p.origin.z, p.origin.x, p.origin.y),
-                      BY_AXIS(p.origin.x, p.origin.y, p.origin.z));
-    p.shear_z = 1.0f / BY_AXIS(d.x, d.y, d.z);
-    p.shear_x = BY_AXIS(d.y, d.z, d.x) * p.shear_z;
-    p.shear_y = BY_AXIS(d.z, d.x, d.y) * p.shear_z;
-#undef BY_AXIS
+    shear_packet(&p, d);
     return p;
 }
 
 // ---- one box, one triangle, all rays -----------------------------------------------------------------------
+
+// Bit i: some ray of the packet may meet child i before `limit`; none that does enters it before distance[i].
+INLINE uint intersect_packet_children(global const uchar *node, const Packet *p, float limit, float8 *distance) {
+    const BoxTest *b = &p->all;
+    if (p->mixed == 0u) return intersect_children(node, b, limit, distance);
+    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
+    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
+    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
+    if (p->mixed & MIXED_X) nx = GREATER(nx, fx), fx = (float8)INFINITY;
+    if (p->mixed & MIXED_Y) ny = GREATER(ny, fy), fy = (float8)INFINITY;
+    if (p->mixed & MIXED_Z) nz = GREATER(nz, fz), fz = (float8)INFINITY;
+    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
+    // Absent children are infinitely far off.
+    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)LESSER(limit, FLT_MAX)));
+    *distance = enter;
+    return lane_bits8(enter <= leave);
+}
 
 // Bits of the rays that meet child i of the node before their limit; as intersect_children tests one ray.
 INLINE uint rays_in_child(global const uchar *node, uint i, const Packet *p, Float limit) {
@@ -129,6 +191,12 @@ INLINE uint rays_in_child(global const uchar *node, uint i, const Packet *p, Flo
     Float ny = (SIDE(b->near_row_y) - p->origin.y) * p->reciprocal.y, fy = (SIDE(b->far_row_y) - p->origin.y) * p->widened.y;
     Float nz = (SIDE(b->near_row_z) - p->origin.z) * p->reciprocal.z, fz = (SIDE(b->far_row_z) - p->origin.z) * p->widened.z;
 #undef SIDE
+    if (p->mixed & MIXED_SIGNS) {
+        // Which side is the near one each ray has to find out; that the widened distance may be the nearer one loses nothing.
+        Float ax = GREATER(nx, fx), ay = GREATER(ny, fy), az = GREATER(nz, fz);
+        nx = LESSER(nx, fx), ny = LESSER(ny, fy), nz = LESSER(nz, fz);
+        fx = ax * FAR_WIDENING, fy = ay * FAR_WIDENING, fz = az * FAR_WIDENING;
+    }
     Float enter = GREATER(GREATER(nx, ny), GREATER(nz, ZERO));
     Float leave = LESSER(LESSER(fx, fy), LESSER(fz, limit));
     return lane_bits(enter <= leave);
@@ -136,13 +204,23 @@ INLINE uint rays_in_child(global const uchar *node, uint i, const Packet *p, Flo
 
 INLINE Corners_lanes corners_in_lanes(global const uchar *block, uint i, const Packet *p) {
     global const uchar *a = block + 4u * i, *b = a + BLOCK_VERTEX_BYTES, *c = b + BLOCK_VERTEX_BYTES;
-#define CORNER(vertex, k) ((Float)*(global const float *)((vertex) + p->k))
-    Corners_lanes t = {
-        CORNER(a, kx) - p->permuted.x, CORNER(a, ky) - p->permuted.y, CORNER(a, kz) - p->permuted.z,
-        CORNER(b, kx) - p->permuted.x, CORNER(b, ky) - p->permuted.y, CORNER(b, kz) - p->permuted.z,
-        CORNER(c, kx) - p->permuted.x, CORNER(c, ky) - p->permuted.y, CORNER(c, kz) - p->permuted.z,
-    };
+#define COORDINATE(vertex, k) ((Float)*(global const float *)((vertex) + (k)))
+    if (p->mixed & MIXED_AXES) {
+        Int x = p->x_major, y = p->y_major;
+#define PERMUTED(vertex, k0, k1, k2) \
+    BY_AXIS(x, y, COORDINATE(vertex, (k0) * BLOCK_ROW_BYTES), COORDINATE(vertex, (k1) * BLOCK_ROW_BYTES), COORDINATE(vertex, (k2) * BLOCK_ROW_BYTES))
+#define CORNER(vertex) \
+    PERMUTED(vertex, 1u, 2u, 0u) - p->permuted.x, PERMUTED(vertex, 2u, 0u, 1u) - p->permuted.y, PERMUTED(vertex, 0u, 1u, 2u) - p->permuted.z
+        Corners_lanes t = {CORNER(a), CORNER(b), CORNER(c)};
 #undef CORNER
+#undef PERMUTED
+        return t;
+    }
+#define CORNER(vertex) \
+    COORDINATE(vertex, p->kx) - p->permuted.x, COORDINATE(vertex, p->ky) - p->permuted.y, COORDINATE(vertex, p->kz) - p->permuted.z
+    Corners_lanes t = {CORNER(a), CORNER(b), CORNER(c)};
+#undef CORNER
+#undef COORDINATE
     return t;
 }
 

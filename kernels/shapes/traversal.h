@@ -11,6 +11,7 @@
 #define WAVELOBE_SHAPES_TRAVERSAL_H
 
 #include "shapes/box_test.h"
+#include "shapes/geometry.h"
 #include "shapes/triangle_block.h"
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
@@ -22,26 +23,12 @@
 #include "shapes/instance.h"
 #endif
 
-typedef struct {
-    global const uchar *nodes;  // BvhNode
-    global const uchar *blocks; // TriangleBlock
-#if HAS_ANALYTIC
-    global const struct Analytic *analytics;
-    global const uint *analytic_order;
-#endif
-#if HAS_OPACITY
-    OpacityView opacity;
-#endif
-#if HAS_INSTANCES
-    global const struct Instance *instances;
-#endif
-} Geometry;
-
 #define CHILD_KEY(i) (((ulong)as_uint(entered[i]) << 32) | child[i])
 #define SORT_KEYS(a, b) { ulong lesser_ = min(a, b), greater_ = max(a, b); a = lesser_; b = greater_; }
 
-// Pushes all children of the mask but the nearest, farthest first, and returns the nearest.
-INLINE uint push_children(uint mask, float8 distance, global const uint *child, ulong *stack, uint *top) {
+// Pushes all children of the mask but the nearest, farthest first, and returns the nearest. The others are asked for: they will
+// be in the cache by the time they are popped.
+INLINE uint push_children(Geometry g, uint mask, float8 distance, global const uint *child, ulong *stack, uint *top) {
     POP_LOWEST_BIT(mask, i0);
     if (LIKELY(mask == 0u)) return child[i0];
     float entered[8] __attribute__((aligned(32)));
@@ -50,6 +37,7 @@ INLINE uint push_children(uint mask, float8 distance, global const uint *child, 
     ulong k0 = CHILD_KEY(i0), k1 = CHILD_KEY(i1);
     SORT_KEYS(k0, k1);
     uint n = *top;
+    fetch_ahead(g, (uint)k1);
     if (LIKELY(mask == 0u)) {
         stack[n] = k1;
         *top = n + 1u;
@@ -59,6 +47,7 @@ INLINE uint push_children(uint mask, float8 distance, global const uint *child, 
     ulong k2 = CHILD_KEY(i2);
     SORT_KEYS(k1, k2);
     SORT_KEYS(k0, k1);
+    fetch_ahead(g, (uint)k2);
     if (LIKELY(mask == 0u)) {
         stack[n] = k2, stack[n + 1u] = k1;
         *top = n + 2u;
@@ -156,12 +145,21 @@ INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, 
 // Boxes are searched a little beyond the nearest hit: a triangle's distance may round to less than that of its box.
 #define REACH(t) ((t) * FAR_WIDENING)
 
+// Pops what is not behind a hit at distance t. The sentinel's distance of 0 is below any limit: every hit has t > 0.
+INLINE uint pop_nearer(const ulong *stack, uint *top, float t) {
+    ulong limit_key = (ulong)as_uint(REACH(t)) << 32, key;
+    uint n = *top;
+    do key = stack[--n];
+    while (UNLIKELY(key >= limit_key));
+    *top = n;
+    return (uint)key;
+}
+
 // What of the subtree `current` is nearer than *hit.
 INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *found_hit) {
     BoxTest box = box_test(r);
     RayShear shear = ray_shear(r);
     Hit hit = *found_hit;
-    // Every hit has t > 0, so that the sentinel's distance of 0 is below any limit and it is always popped last.
     ulong stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u;
@@ -178,7 +176,7 @@ INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *foun
             float8 distance;
             uint mask = intersect_children(node, &box, REACH(hit.t), &distance);
             if (UNLIKELY(mask == 0u)) goto pop;
-            current = push_children(mask, distance, (global const uint *)(node + NODE_CHILD_BYTES), stack, &top);
+            current = push_children(g, mask, distance, (global const uint *)(node + NODE_CHILD_BYTES), stack, &top);
         }
 #if HAS_ANALYTIC
         if (current & BVH_ANALYTIC) {
@@ -204,10 +202,7 @@ INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *foun
         if (hit.t < found) hit.instance = instance;
         found = hit.t;
 #endif
-        ulong limit_key = (ulong)as_uint(REACH(hit.t)) << 32, key;
-        do key = stack[--top];
-        while (UNLIKELY(key >= limit_key));
-        current = (uint)key;
+        current = pop_nearer(stack, &top, hit.t);
         if (current == BVH_EMPTY) break;
 #if HAS_INSTANCES
         if (current == BVH_RETURN) {
@@ -281,6 +276,7 @@ INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
             current = child[i0];
             while (mask) {
                 POP_LOWEST_BIT(mask, i);
+                fetch_ahead(g, current);
                 stack[top++] = current;
                 current = child[i];
             }

@@ -91,6 +91,43 @@ TEST(Packets, OfEveryWidthAndPath) {
     expect_same(bvh, rays, portable);
 }
 
+// Rays that have nothing in common, several in turn: more of them than walks, as many, and fewer.
+TEST(Packets, WalksInTurn) {
+    const Bvh bvh = build_bvh(triangle_soup(5000, 0.1F, 1.0F, {}, 4), {}, BvhQuality::split, 1);
+    for (const int walks : {2, 8, 16}) {
+        TraversalProbe in_turn(false, true, 16, walks);
+        expect_same(bvh, bundles(2000, 1.0F, 1.0F, {}), in_turn);
+        expect_same(bvh, bundles(2000, 0.1F, 1.0F, {}), in_turn);
+    }
+}
+
+// Rays from all around to about one point: they agree in nothing, and go together as shadow rays to a lamp do.
+TEST(Packets, TowardsALampFromAllSides) {
+    const Bvh bvh = build_bvh(triangle_soup(5000, 0.05F, 1.0F, {}, 5), {}, BvhQuality::split, 1);
+    Generator random(6);
+    std::vector<TestRay> rays;
+    for (int i = 0; i < 20000; ++i) {
+        const glm::vec3 lamp{0.1F, 0.9F, -0.2F};
+        TestRay ray = ray_to(lamp + uniform_in_cube(random, i < 10000 ? 0.3F : 1.5F), lamp + uniform_in_cube(random, 0.02F));
+        ray.limit = i % 5 == 0 ? infinity : uniform(random, 0.1F, 2.0F);
+        rays.push_back(ray);
+    }
+    expect_same(bvh, rays);
+}
+
+// Along the axes, where reciprocals are as large as they get, up and down at once.
+TEST(Packets, AlongTheAxes) {
+    const Bvh bvh = build_bvh(sphere_mesh(5, 1.0F, {}).triangles(), {}, BvhQuality::split, 1);
+    Generator random(7);
+    std::vector<TestRay> rays;
+    for (int i = 0; i < 8000; ++i) {
+        TestRay ray{uniform_in_cube(random, 1.2F), {0, 0, 0}};
+        ray.direction[static_cast<glm::length_t>(i / 16 % 3)] = i % 2 == 0 ? 1.0F : -1.0F;
+        rays.push_back(ray);
+    }
+    expect_same(bvh, rays);
+}
+
 // Each triangle there three times, in three planes that are the same: which of them is hit is a matter of ties.
 TEST(Packets, BreakTiesAlike) {
     Triangles triangles;

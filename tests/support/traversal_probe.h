@@ -30,10 +30,12 @@ struct TestHit {
 
 class TraversalProbe {
 public:
-    // With `groups`, rays go through the hierarchy in groups of as many as there are lanes, in their order.
-    explicit TraversalProbe(bool portable = false, bool groups = false, int lanes = 16)
+    // With `groups`, rays go through the hierarchy in groups of as many as there are lanes, in their order; what does not agree of
+    // them as so many `walks` in turn.
+    explicit TraversalProbe(bool portable = false, bool groups = false, int lanes = 16, int walks = 1)
         : probe_(source, {.lanes = lanes,
-                          .defines = std::string(portable ? "-DWAVELOBE_PORTABLE " : "") + (groups ? "-DGROUPS=1" : "-DGROUPS=0")}) {}
+                          .defines = std::string(portable ? "-DWAVELOBE_PORTABLE " : "") + (groups ? "-DGROUPS=1" : "-DGROUPS=0") +
+                                     " -DWALKS=" + std::to_string(walks) + "u"}) {}
 
     std::vector<TestHit> trace(const Bvh& bvh, const std::vector<TestRay>& rays) {
         std::vector<TestHit> hits(rays.size());

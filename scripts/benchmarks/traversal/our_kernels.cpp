@@ -82,7 +82,7 @@ void set_mesh(Kernel& kernel, const MeshBuffers& mesh) {
 OurKernels::OurKernels(const Device& device, const MeshBuffers& mesh, const std::string& defines)
     : device_(device),
       program_(device, source, "traversal_benchmark.cl",
-               std::string("-DLANES=16 -DHAS_FEW_TRIANGLES=") + (mesh.few ? "1 " : "0 ") + defines),
+               "-DLANES=16 -DHAS_FEW_TRIANGLES=" + std::to_string(mesh.few) + " -DWALKS=" + std::to_string(mesh.walks) + "u " + defines),
       closest_(program_, "closest_hits"),
       any_(program_, "any_hits") {
     set_mesh(closest_, mesh);

@@ -1,6 +1,7 @@
 // Our traversal kernels on the rays of the benchmark.
 #pragma once
 
+#include "accel/bvh.h"
 #include "accel/few_triangles.h"
 #include "cl/program.h"
 #include "rays.h"
@@ -11,6 +12,7 @@ namespace wavelobe::benchmark {
 struct MeshBuffers {
     MeshBuffers(const Device& device, const Bvh& bvh, const FewTriangleSet& set)
         : few(!set.triangles.empty()),
+          walks(walks_in_turn(bvh)),
           nodes(Buffer::of<BvhNode>(device, bvh.nodes)),
           blocks(Buffer::of<TriangleBlock>(device, bvh.blocks)),
           few_vertices(Buffer::of<float>(device, few ? set.vertices : std::vector<float>(3))),
@@ -18,6 +20,7 @@ struct MeshBuffers {
           few_summary(Buffer::of<FewSummary>(device, std::vector<FewSummary>{set.summary})) {}
 
     bool few;
+    int walks;
     Buffer nodes, blocks, few_vertices, few_triangles, few_summary;
 };
 
