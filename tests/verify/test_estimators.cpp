@@ -133,6 +133,16 @@ TEST(Estimators, TraversalKernelsAgree) {
     EXPECT_LT(apart, a.rgb.size() / 300);
 }
 
+TEST(Estimators, RaysInTurnMakeTheSamePicture) {
+    const Scene scene = file_scene("sunlit_mesh");
+    RenderSettings settings = with(8);
+    settings.samples_per_pixel = 4;
+    settings.walks_in_turn = 1;
+    const Image alone = render(scene, settings).image;
+    settings.walks_in_turn = 8;
+    EXPECT_EQ(render(scene, settings).image.rgb, alone.rgb);
+}
+
 TEST(Estimators, DirectLightIsThatOfPathsOfTwoEdges) {
     const SceneFolder folder;
     for (const char* name : {"cornell_box", "glossy_plates"}) {

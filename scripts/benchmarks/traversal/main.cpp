@@ -121,13 +121,18 @@ nlohmann::json measure(const Options& options, const Contest& c, const RaySet& r
     return row;
 }
 
+// Rooms by the cells along a side of their ornaments: 200 cells^2 * 2 triangles, or nearly.
+constexpr std::pair<const char*, int> rooms[] = {{"room-1k", 2}, {"room-9k", 5}, {"room-99k", 16}, {"room-990k", 50}, {"room-10M", 158}};
+
 BenchmarkMesh make_mesh(const std::string& name, const std::string& scene) {
     if (name == "box") return box_mesh();
-    if (name == "room-99k") return room_mesh(name, 16);
-    if (name == "room-990k") return room_mesh(name, 50);
-    if (name == "room-10M") return room_mesh(name, 158);
     if (name == "scene" && !scene.empty()) return scene_mesh(name, scene);
-    throw std::runtime_error("no mesh called '" + name + "': box, room-99k, room-990k, room-10M, or scene with --scene FILE");
+    std::string known = "box";
+    for (const auto& [room, cells] : rooms) {
+        if (name == room) return room_mesh(name, cells);
+        known += std::string(", ") + room;
+    }
+    throw std::runtime_error("no mesh called '" + name + "': " + known + ", or scene with --scene FILE");
 }
 
 void run(const Options& options) {
@@ -170,7 +175,7 @@ int main(int argc, char** argv) {
     app.add_option("--threads", options.threads, "compute threads")->check(CLI::PositiveNumber);
     app.add_option("--side", options.side, "camera rays a side, a multiple of 16");
     app.add_option("--rounds", options.rounds, "medians of this many rounds")->check(CLI::PositiveNumber);
-    app.add_option("--meshes", options.meshes, "box, room-99k, room-990k, room-10M, scene");
+    app.add_option("--meshes", options.meshes, "box, room-1k, room-9k, room-99k, room-990k, room-10M, scene");
     app.add_option("--scene", options.scene, "Mitsuba scene for the mesh `scene`");
     app.add_option("--quality", quality, "of the hierarchy")->check(CLI::IsMember({"fast", "best"}));
     CLI11_PARSE(app, argc, argv);
