@@ -1,4 +1,4 @@
-"""Tables and curves of the error benchmark."""
+"""Tables and curves of the benchmarks."""
 
 
 def seconds_text(value):
@@ -45,6 +45,17 @@ def print_summary(results, targets):
         print(line)
 
 
+def finish(plot, figure, axes, folder, name):
+    axes.grid(True, which="major", linewidth=0.3)
+    axes.legend(fontsize=8)
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.{kind}" for kind in ("png", "svg")]
+    for path in paths:
+        figure.savefig(path, dpi=130)
+    plot.close(figure)
+    return paths
+
+
 def draw(result, targets, folder):
     """Time against error, log-log, all renderers, as PNG and SVG."""
     import matplotlib
@@ -70,14 +81,7 @@ def draw(result, targets, folder):
               color="grey", linewidth=0.6, label="slope -1")
     axes.set(xscale="log", yscale="log", xlabel="render seconds", ylabel="relMSE",
              title=f"{result['scene']}, {result['size']} x {result['size']}, {result['threads']} threads")
-    axes.grid(True, which="major", linewidth=0.3)
-    axes.legend(fontsize=8)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"{result['scene']}-{result['threads']}.{kind}" for kind in ("png", "svg")]
-    for path in paths:
-        figure.savefig(path, dpi=130)
-    plot.close(figure)
-    return paths
+    return finish(plot, figure, axes, folder, f"{result['scene']}-{result['threads']}")
 
 
 def draw_traversal(result, folder):
@@ -99,11 +103,4 @@ def draw_traversal(result, folder):
             points = [(r["triangles"], 1e3 / r[key]) for r in rows if r["rays"] == rays]
             axes.plot(*zip(*points), style, marker="o", markersize=4, linewidth=2.2 if key == "ours" else 1.2, label=f"{label}, {rays}")
     axes.set(xscale="log", xlabel="triangles", ylabel="ns a ray", title="Closest hits of bounce rays in a closed room, one thread")
-    axes.grid(True, which="major", linewidth=0.3)
-    axes.legend(fontsize=8)
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"traversal.{kind}" for kind in ("png", "svg")]
-    for path in paths:
-        figure.savefig(path, dpi=130)
-    plot.close(figure)
-    return paths
+    return finish(plot, figure, axes, folder, "traversal")
