@@ -55,7 +55,8 @@ typedef struct {
     uint rays;   // bits of those that are in it
     uint mixed;  // bits as above
     BoxTest all; // of all of them, by intervals
-    Vec3 origin, reciprocal, widened; // of each
+    Vec3 origin, reciprocal;          // of each
+    Vec3 far_reciprocal;              // the same, widened for far sides unless rays have yet to find out which those are
     Int x_major, y_major;             // of each
     uint kx, ky, kz;                  // byte offsets of the permuted axes in a vertex, unless axes are mixed
     Vec3 permuted;                    // origins, axes permuted
@@ -158,7 +159,7 @@ INLINE Packet make_packet(const RayGroup *g, uint left, int may_mix) {
     bound_axis(p.rays, ys, p.origin.y, p.reciprocal.y, &b->near_oy, &b->far_oy, &b->near_y, &b->far_y);
     bound_axis(p.rays, zs, p.origin.z, p.reciprocal.z, &b->near_oz, &b->far_oz, &b->near_z, &b->far_z);
     choose_rows(b, xs == p.rays, ys == p.rays, zs == p.rays);
-    p.widened = scale(p.reciprocal, (Float)FAR_WIDENING);
+    p.far_reciprocal = p.mixed & MIXED_SIGNS ? p.reciprocal : scale(p.reciprocal, (Float)FAR_WIDENING);
     shear_packet(&p, d);
     return p;
 }
@@ -187,12 +188,12 @@ INLINE uint rays_in_child(global const uchar *node, uint i, const Packet *p, Flo
     const BoxTest *b = &p->all;
     global const uchar *box = node + 4u * i;
 #define SIDE(row) ((Float)*(global const float *)(box + (row)))
-    Float nx = (SIDE(b->near_row_x) - p->origin.x) * p->reciprocal.x, fx = (SIDE(b->far_row_x) - p->origin.x) * p->widened.x;
-    Float ny = (SIDE(b->near_row_y) - p->origin.y) * p->reciprocal.y, fy = (SIDE(b->far_row_y) - p->origin.y) * p->widened.y;
-    Float nz = (SIDE(b->near_row_z) - p->origin.z) * p->reciprocal.z, fz = (SIDE(b->far_row_z) - p->origin.z) * p->widened.z;
+    Float nx = (SIDE(b->near_row_x) - p->origin.x) * p->reciprocal.x, fx = (SIDE(b->far_row_x) - p->origin.x) * p->far_reciprocal.x;
+    Float ny = (SIDE(b->near_row_y) - p->origin.y) * p->reciprocal.y, fy = (SIDE(b->far_row_y) - p->origin.y) * p->far_reciprocal.y;
+    Float nz = (SIDE(b->near_row_z) - p->origin.z) * p->reciprocal.z, fz = (SIDE(b->far_row_z) - p->origin.z) * p->far_reciprocal.z;
 #undef SIDE
     if (p->mixed & MIXED_SIGNS) {
-        // Which side is the near one each ray has to find out; that the widened distance may be the nearer one loses nothing.
+        // Which side is the near one is for each ray to find out.
         Float ax = GREATER(nx, fx), ay = GREATER(ny, fy), az = GREATER(nz, fz);
         nx = LESSER(nx, fx), ny = LESSER(ny, fy), nz = LESSER(nz, fz);
         fx = ax * FAR_WIDENING, fy = ay * FAR_WIDENING, fz = az * FAR_WIDENING;
@@ -206,18 +207,23 @@ INLINE Corners_lanes corners_in_lanes(global const uchar *block, uint i, const P
     global const uchar *a = block + 4u * i, *b = a + BLOCK_VERTEX_BYTES, *c = b + BLOCK_VERTEX_BYTES;
 #define COORDINATE(vertex, k) ((Float)*(global const float *)((vertex) + (k)))
     if (p->mixed & MIXED_AXES) {
-        Int x = p->x_major, y = p->y_major;
-#define PERMUTED(vertex, k0, k1, k2) \
-    BY_AXIS(x, y, COORDINATE(vertex, (k0) * BLOCK_ROW_BYTES), COORDINATE(vertex, (k1) * BLOCK_ROW_BYTES), COORDINATE(vertex, (k2) * BLOCK_ROW_BYTES))
-#define CORNER(vertex) \
-    PERMUTED(vertex, 1u, 2u, 0u) - p->permuted.x, PERMUTED(vertex, 2u, 0u, 1u) - p->permuted.y, PERMUTED(vertex, 0u, 1u, 2u) - p->permuted.z
+        Int x_major = p->x_major, y_major = p->y_major;
+#define ROW(vertex, k) COORDINATE(vertex, (k) * BLOCK_ROW_BYTES)
+#define PERMUTED(vertex, k0, k1, k2) BY_AXIS(x_major, y_major, ROW(vertex, k0), ROW(vertex, k1), ROW(vertex, k2))
+#define CORNER(vertex)                                      \
+    PERMUTED(vertex, 1u, 2u, 0u) - p->permuted.x,           \
+        PERMUTED(vertex, 2u, 0u, 1u) - p->permuted.y,       \
+        PERMUTED(vertex, 0u, 1u, 2u) - p->permuted.z
         Corners_lanes t = {CORNER(a), CORNER(b), CORNER(c)};
 #undef CORNER
 #undef PERMUTED
+#undef ROW
         return t;
     }
-#define CORNER(vertex) \
-    COORDINATE(vertex, p->kx) - p->permuted.x, COORDINATE(vertex, p->ky) - p->permuted.y, COORDINATE(vertex, p->kz) - p->permuted.z
+#define CORNER(vertex)                              \
+    COORDINATE(vertex, p->kx) - p->permuted.x,      \
+        COORDINATE(vertex, p->ky) - p->permuted.y,  \
+        COORDINATE(vertex, p->kz) - p->permuted.z
     Corners_lanes t = {CORNER(a), CORNER(b), CORNER(c)};
 #undef CORNER
 #undef COORDINATE

@@ -67,6 +67,21 @@ TestRay ray_from_inside(const ClosedMesh& mesh, const glm::vec3& center, const g
     return ray_to(origin, kind == 0 ? a : glm::mix(a, b, kind == 1 ? 0.5F : uniform(random, 0.0F, 1.0F)));
 }
 
+// Sixteen rays along an axis, to the vertices, edges and faces around one vertex: a packet whose rays differ in their signs.
+void add_bundle(std::vector<TestRay>& rays, const ClosedMesh& mesh, const glm::vec3& center, const glm::vec3& half, Generator& random) {
+    const std::size_t face = random() % mesh.faces.size();
+    const auto axis = static_cast<glm::length_t>(random() % 3);
+    glm::vec3 start = 0.9F * (mesh.vertices[mesh.faces[face].x] - center);
+    start[axis] = 0.0F;
+    for (std::size_t k = 0; k < 16; ++k) {
+        const glm::uvec3& f = mesh.faces[(face + k / 4) % mesh.faces.size()];
+        const auto corner = static_cast<glm::length_t>(k % 3);
+        const glm::vec3 a = mesh.vertices[f[corner]], b = mesh.vertices[f[(corner + 1) % 3]];
+        const glm::vec3 origin = center + start + 0.05F * half * uniform_in_cube(random, 1.0F);
+        rays.push_back(ray_to(origin, k % 2 == 0 ? a : glm::mix(a, b, uniform(random, 0.0F, 1.0F))));
+    }
+}
+
 TEST_P(ClosedMeshes, LetNoRayPass) {
     const Placement& p = GetParam();
     // Far away the steps of floats are larger than needles are thick.
@@ -81,8 +96,10 @@ TEST_P(ClosedMeshes, LetNoRayPass) {
         std::size_t passed = 0;
         const std::size_t batches = quick_or_full<std::size_t>(1, 40);
         for (std::size_t k = 0; k < batches; ++k) {
-            std::vector<TestRay> rays(batch);
-            for (TestRay& ray : rays) ray = ray_from_inside(shape.mesh, center, p.scale * shape.inside, random);
+            std::vector<TestRay> rays;
+            const glm::vec3 half = p.scale * shape.inside;
+            while (rays.size() < batch / 2) rays.push_back(ray_from_inside(shape.mesh, center, half, random));
+            while (rays.size() < batch) add_bundle(rays, shape.mesh, center, half, random);
             for (TraversalProbe* probe : {&alone, &in_groups}) {
                 for (const TestHit& hit : probe->trace(bvh, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
             }
