@@ -79,7 +79,9 @@ struct TraversalData {
 TraversalData build_traversal(DeviceScene& scene, int threads, const RenderSettings& settings) {
     TraversalData data{build_scene_bvh(scene, threads, settings.bvh), {}};
     scene.features.bvh_stack = traversal_stack(data.bvh.depth);
-    scene.features.walks = settings.walks_in_turn > 0 ? settings.walks_in_turn : walks_in_turn(data.bvh);
+    // Rays that go in groups can be taken in turn (HAS_PACKETS of kernels/shapes/packet.h).
+    const bool grouped = !scene.features.analytic && !scene.features.instances && !scene.features.masks;
+    if (grouped) scene.features.walks = settings.walks_in_turn > 0 ? settings.walks_in_turn : walks_in_turn(data.bvh);
     const bool hierarchy = scene.features.instances || settings.always_hierarchy;
     if (!hierarchy) data.few = find_few_triangles(data.bvh, scene.analytic_bounds);
     scene.features.few_triangles = !data.few.triangles.empty();
