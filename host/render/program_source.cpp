@@ -1,3 +1,6 @@
+// The source of a scene's program (render/features.h).
+#include <algorithm>
+#include <array>
 #include <sstream>
 
 #include "render/feature_tables.h"

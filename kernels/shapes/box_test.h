@@ -53,15 +53,31 @@ INLINE BoxTest box_test(const Ray *r) {
     return b;
 }
 
-// Bit i: the ray meets child i before `limit`, entering at distance[i].
-INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
-    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
-    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
-    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
-    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
-    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)limit));
+// Distances at which the eight boxes of a node are entered and left along each axis.
+typedef struct {
+    float8 near_x, near_y, near_z, far_x, far_y, far_z;
+} Slabs;
+
+INLINE Slabs intersect_slabs(global const uchar *node, const BoxTest *b) {
+    Slabs s;
+    s.near_x = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, s.far_x = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
+    s.near_y = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, s.far_y = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
+    s.near_z = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, s.far_z = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
+    return s;
+}
+
+// Bit i: box i is entered, at distance[i], before it is left and before `limit`.
+INLINE uint within_slabs(const Slabs *s, float limit, float8 *distance) {
+    float8 enter = GREATER(GREATER(s->near_x, s->near_y), GREATER(s->near_z, (float8)0.0f));
+    float8 leave = LESSER(LESSER(s->far_x, s->far_y), LESSER(s->far_z, (float8)limit));
     *distance = enter;
     return lane_bits8(enter <= leave);
+}
+
+// Bit i: the ray meets child i before `limit`, entering at distance[i].
+INLINE uint intersect_children(global const uchar *node, const BoxTest *b, float limit, float8 *distance) {
+    Slabs s = intersect_slabs(node, b);
+    return within_slabs(&s, limit, distance);
 }
 
 #endif

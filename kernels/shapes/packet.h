@@ -74,9 +74,9 @@ INLINE float least_lane(Float v) {
     return LESSER(c.x, c.y);
 }
 
-INLINE float greatest_lane(Float v) { return -least_lane(-v); }
-
 INLINE float least_of(uint rays, Float v) { return least_lane(SELECT(mask_of_bits(rays), v, (Float)INFINITY)); }
+
+INLINE float greatest_of(uint rays, Float v) { return -least_of(rays, -v); }
 
 // Bounds of an axis for all rays: the nearer and farther end of the origins, and of the reciprocals. The distance to a plane
 // ahead is at least that from the origin nearest to it at the greatest speed. (A plane behind gets a wrong, but still
@@ -86,14 +86,14 @@ INLINE float least_of(uint rays, Float v) { return least_lane(SELECT(mask_of_bit
 // for the others. There is no far one, as some ray may hardly move along it.
 INLINE void bound_axis(uint rays, uint down, Float origin, Float reciprocal, float *near_origin, float *far_origin, float *near,
                        float *far) {
-    float low = least_of(rays, origin), high = -least_of(rays, -origin);
+    float low = least_of(rays, origin), high = greatest_of(rays, origin);
     Float size = fabs(reciprocal);
     if (down == 0u || down == rays) {
         float sign = down ? -1.0f : 1.0f;
         *near_origin = down ? low : high;
         *far_origin = down ? high : low;
         *near = sign * least_of(rays, size);
-        *far = sign * -least_of(rays, -size) * FAR_WIDENING;
+        *far = sign * greatest_of(rays, size) * FAR_WIDENING;
     } else {
         *near_origin = high;
         *far_origin = low;
@@ -101,8 +101,6 @@ INLINE void bound_axis(uint rays, uint down, Float origin, Float reciprocal, flo
         *far = -least_of(down, size);
     }
 }
-
-#define BY_AXIS(x_axis, y_axis, if_x, if_y, if_z) ((x_axis) ? (if_x) : (y_axis) ? (if_y) : (if_z))
 
 // How triangles are sheared for each ray, as ray_shear does for one.
 INLINE void shear_packet(Packet *p, Vec3 d) {
@@ -118,11 +116,10 @@ INLINE void shear_packet(Packet *p, Vec3 d) {
     p->kz = BY_AXIS(first_x, first_y, 0u, 1u, 2u) * BLOCK_ROW_BYTES;
 }
 
+INLINE float extent(uint rays, Float v) { return greatest_of(rays, v) - least_of(rays, v); }
+
 // The widest extent of a vector's components.
-INLINE float widest(uint rays, Vec3 v) {
-    float x = -least_of(rays, -v.x) - least_of(rays, v.x), y = -least_of(rays, -v.y) - least_of(rays, v.y);
-    return max(max(x, y), -least_of(rays, -v.z) - least_of(rays, v.z));
-}
+INLINE float widest(uint rays, Vec3 v) { return max(max(extent(rays, v.x), extent(rays, v.y)), extent(rays, v.z)); }
 
 // How far apart rays are: how much their directions differ, and their origins for their lengths.
 INLINE float spread(uint rays, Vec3 d, Vec3 origin, Float limit) {
@@ -168,19 +165,12 @@ INLINE Packet make_packet(const RayGroup *g, uint left, int may_mix) {
 
 // Bit i: some ray of the packet may meet child i before `limit`; none that does enters it before distance[i].
 INLINE uint intersect_packet_children(global const uchar *node, const Packet *p, float limit, float8 *distance) {
-    const BoxTest *b = &p->all;
-    if (p->mixed == 0u) return intersect_children(node, b, limit, distance);
-    float8 nx = (row8(node, b->near_row_x) - b->near_ox) * b->near_x, fx = (row8(node, b->far_row_x) - b->far_ox) * b->far_x;
-    float8 ny = (row8(node, b->near_row_y) - b->near_oy) * b->near_y, fy = (row8(node, b->far_row_y) - b->far_oy) * b->far_y;
-    float8 nz = (row8(node, b->near_row_z) - b->near_oz) * b->near_z, fz = (row8(node, b->far_row_z) - b->far_oz) * b->far_z;
-    if (p->mixed & MIXED_X) nx = GREATER(nx, fx), fx = (float8)INFINITY;
-    if (p->mixed & MIXED_Y) ny = GREATER(ny, fy), fy = (float8)INFINITY;
-    if (p->mixed & MIXED_Z) nz = GREATER(nz, fz), fz = (float8)INFINITY;
-    float8 enter = GREATER(GREATER(nx, ny), GREATER(nz, (float8)0.0f));
+    Slabs s = intersect_slabs(node, &p->all);
+    if (p->mixed & MIXED_X) s.near_x = GREATER(s.near_x, s.far_x), s.far_x = (float8)INFINITY;
+    if (p->mixed & MIXED_Y) s.near_y = GREATER(s.near_y, s.far_y), s.far_y = (float8)INFINITY;
+    if (p->mixed & MIXED_Z) s.near_z = GREATER(s.near_z, s.far_z), s.far_z = (float8)INFINITY;
     // Absent children are infinitely far off.
-    float8 leave = LESSER(LESSER(fx, fy), LESSER(fz, (float8)LESSER(limit, FLT_MAX)));
-    *distance = enter;
-    return lane_bits8(enter <= leave);
+    return within_slabs(&s, LESSER(limit, FLT_MAX), distance);
 }
 
 // Bits of the rays that meet child i of the node before their limit; as intersect_children tests one ray.

@@ -27,8 +27,8 @@ typedef struct {
 } PacketStack;
 
 // Pushes the children of a node that rays of the packet meet, farthest first, and returns the nearest, or BVH_EMPTY.
-INLINE uint push_packet_children(Geometry g, global const uchar *node, const Packet *p, Float reach, float farthest, uint *rays,
-                                 PacketStack *stack) {
+INLINE uint push_packet_children(Geometry g, uint index, const Packet *p, Float reach, float farthest, uint *rays, PacketStack *stack) {
+    global const uchar *node = g.nodes + ((size_t)index << NODE_SHIFT);
     float8 distance;
     uint mask = intersect_children(node, &p->all, farthest, &distance);
     float entered[8] __attribute__((aligned(32)));
@@ -101,14 +101,14 @@ INLINE void trace_closest_group(Geometry g, const RayGroup *group, uint live, Gr
         stack.rays[0] = (ushort)rays;
         stack.top = 1u;
         Float reach = REACH(LANES_OF(hit->t));
-        float farthest = greatest_lane(SELECT(mask_of_bits(rays), reach, ZERO));
+        float farthest = greatest_of(rays, reach);
         for (;;) {
             if (!together || popcount(rays) <= SINGLE_RAYS) {
                 closest_one_by_one(g, current, rays, group, hit);
             } else if (current & BVH_LEAF) {
                 closest_for_packet(g, current & ~BVH_LEAF, rays, &p, group, hit);
             } else {
-                current = push_packet_children(g, g.nodes + ((size_t)current << NODE_SHIFT), &p, reach, farthest, &rays, &stack);
+                current = push_packet_children(g, current, &p, reach, farthest, &rays, &stack);
                 if (current != BVH_EMPTY) continue;
                 goto pop;
             }
@@ -166,7 +166,7 @@ INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
         int together = popcount(p.rays) >= LEAST_PACKET;
         uint current = 0u, rays = together ? p.rays : left;
         left &= ~rays;
-        float farthest = -least_of(rays, -limit);
+        float farthest = greatest_of(rays, limit);
         stack.key[0] = BVH_EMPTY;
         stack.top = 1u;
         while (current != BVH_EMPTY) {

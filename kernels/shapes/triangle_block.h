@@ -17,21 +17,21 @@ typedef struct {
 #define BLOCK_PRIMITIVE_BYTES 288u
 
 // By selects: which axis is the largest is anyone's guess, and so would be a branch.
+#define BY_AXIS(x_major, y_major, if_x, if_y, if_z) ((x_major) ? (if_x) : (y_major) ? (if_y) : (if_z))
+
 INLINE RayShear ray_shear(const Ray *r) {
     RayShear s;
     float ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
     int x_major = (ax > ay) & (ax > az), y_before_z = ay > az;
-#define BY_MAJOR_AXIS(if_x, if_y, if_z) (x_major ? (if_x) : y_before_z ? (if_y) : (if_z))
-    s.kx = BY_MAJOR_AXIS(1u, 2u, 0u) * BLOCK_ROW_BYTES;
-    s.ky = BY_MAJOR_AXIS(2u, 0u, 1u) * BLOCK_ROW_BYTES;
-    s.kz = BY_MAJOR_AXIS(0u, 1u, 2u) * BLOCK_ROW_BYTES;
-    s.ox = BY_MAJOR_AXIS(r->oy, r->oz, r->ox);
-    s.oy = BY_MAJOR_AXIS(r->oz, r->ox, r->oy);
-    s.oz = BY_MAJOR_AXIS(r->ox, r->oy, r->oz);
-    s.sz = 1.0f / BY_MAJOR_AXIS(r->dx, r->dy, r->dz);
-    s.sx = BY_MAJOR_AXIS(r->dy, r->dz, r->dx) * s.sz;
-    s.sy = BY_MAJOR_AXIS(r->dz, r->dx, r->dy) * s.sz;
-#undef BY_MAJOR_AXIS
+    s.kx = BY_AXIS(x_major, y_before_z, 1u, 2u, 0u) * BLOCK_ROW_BYTES;
+    s.ky = BY_AXIS(x_major, y_before_z, 2u, 0u, 1u) * BLOCK_ROW_BYTES;
+    s.kz = BY_AXIS(x_major, y_before_z, 0u, 1u, 2u) * BLOCK_ROW_BYTES;
+    s.ox = BY_AXIS(x_major, y_before_z, r->oy, r->oz, r->ox);
+    s.oy = BY_AXIS(x_major, y_before_z, r->oz, r->ox, r->oy);
+    s.oz = BY_AXIS(x_major, y_before_z, r->ox, r->oy, r->oz);
+    s.sz = 1.0f / BY_AXIS(x_major, y_before_z, r->dx, r->dy, r->dz);
+    s.sx = BY_AXIS(x_major, y_before_z, r->dy, r->dz, r->dx) * s.sz;
+    s.sy = BY_AXIS(x_major, y_before_z, r->dz, r->dx, r->dy) * s.sz;
     return s;
 }
 

@@ -18,21 +18,28 @@ inline std::vector<TestRay> random_rays(std::size_t count, float scale, const gl
     return rays;
 }
 
+enum class Aim { corner, middle_of_edge, edge, anywhere };
+
+// A ray to what `aim` says of a face's corner and of the edge that starts there.
+inline TestRay aimed_ray(const glm::vec3& origin, const ClosedMesh& mesh, std::size_t face, std::size_t corner, Aim aim, Generator& random) {
+    const glm::uvec3& f = mesh.faces[face];
+    const glm::vec3 a = mesh.vertices[f[static_cast<int>(corner % 3)]];
+    const glm::vec3 b = mesh.vertices[f[static_cast<int>((corner + 1) % 3)]];
+    switch (aim) {
+        case Aim::corner: return ray_to(origin, a);
+        case Aim::middle_of_edge: return ray_to(origin, 0.5F * (a + b));
+        case Aim::edge: return ray_to(origin, glm::mix(a, b, uniform(random, 0.0F, 1.0F)));
+        default: return {origin, uniform_direction(random)};
+    }
+}
+
 // Rays from inside a closed mesh to its vertices, to points of its edges, and anywhere.
 inline std::vector<TestRay> rays_from_inside(const ClosedMesh& mesh, float inner_half, const glm::vec3& center, std::size_t count) {
     Generator random(7);
     std::vector<TestRay> rays;
     for (std::size_t i = 0; i < count; ++i) {
         const glm::vec3 origin = center + (i % 5 == 0 ? glm::vec3{0.0F} : uniform_in_cube(random, inner_half));
-        const glm::uvec3& f = mesh.faces[i % mesh.faces.size()];
-        const glm::vec3 a = mesh.vertices[f[static_cast<int>(i % 3)]];
-        const glm::vec3 b = mesh.vertices[f[static_cast<int>((i + 1) % 3)]];
-        switch (i % 4) {
-            case 0: rays.push_back(ray_to(origin, a)); break;
-            case 1: rays.push_back(ray_to(origin, 0.5F * (a + b))); break;
-            case 2: rays.push_back(ray_to(origin, glm::mix(a, b, uniform(random, 0.0F, 1.0F)))); break;
-            default: rays.push_back({origin, uniform_direction(random)}); break;
-        }
+        rays.push_back(aimed_ray(origin, mesh, i % mesh.faces.size(), i % 3, static_cast<Aim>(i % 4), random));
     }
     return rays;
 }

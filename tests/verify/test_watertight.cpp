@@ -58,13 +58,9 @@ class ClosedMeshes : public testing::TestWithParam<Placement> {};
 // A ray from inside to a vertex, to a point of an edge, or anywhere.
 TestRay ray_from_inside(const ClosedMesh& mesh, const glm::vec3& center, const glm::vec3& half, Generator& random) {
     const glm::vec3 origin = center + half * uniform_in_cube(random, 1.0F);
-    const glm::uvec3& f = mesh.faces[random() % mesh.faces.size()];
-    const unsigned kind = random() % 4;
-    if (kind == 3) return {origin, uniform_direction(random)};
-    const auto corner = static_cast<glm::length_t>(random() % 3);
-    const glm::vec3 a = mesh.vertices[f[corner]];
-    const glm::vec3 b = mesh.vertices[f[(corner + 1) % 3]];
-    return ray_to(origin, kind == 0 ? a : glm::mix(a, b, kind == 1 ? 0.5F : uniform(random, 0.0F, 1.0F)));
+    const std::size_t face = random() % mesh.faces.size();
+    const std::size_t corner = random() % 3;
+    return aimed_ray(origin, mesh, face, corner, static_cast<Aim>(random() % 4), random);
 }
 
 // Sixteen rays along an axis, to the vertices, edges and faces around one vertex: a packet whose rays differ in their signs.
@@ -74,11 +70,8 @@ void add_bundle(std::vector<TestRay>& rays, const ClosedMesh& mesh, const glm::v
     glm::vec3 start = 0.9F * (mesh.vertices[mesh.faces[face].x] - center);
     start[axis] = 0.0F;
     for (std::size_t k = 0; k < 16; ++k) {
-        const glm::uvec3& f = mesh.faces[(face + k / 4) % mesh.faces.size()];
-        const auto corner = static_cast<glm::length_t>(k % 3);
-        const glm::vec3 a = mesh.vertices[f[corner]], b = mesh.vertices[f[(corner + 1) % 3]];
         const glm::vec3 origin = center + start + 0.05F * half * uniform_in_cube(random, 1.0F);
-        rays.push_back(ray_to(origin, k % 2 == 0 ? a : glm::mix(a, b, uniform(random, 0.0F, 1.0F))));
+        rays.push_back(aimed_ray(origin, mesh, (face + k / 4) % mesh.faces.size(), k, k % 2 == 0 ? Aim::corner : Aim::edge, random));
     }
 }
 
