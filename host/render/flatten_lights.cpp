@@ -164,7 +164,7 @@ void LightFlattener::build_tree() {
     LightTree tree = build_light_tree(bounds_);
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
         out_.lights[i].selection_probability = 0.0F;
-        out_.lights[i].trail = tree.trails[i];
+        out_.lights[i].place = tree.places[i];
     }
     out_.light_tree = std::move(tree.nodes);
     // Each light at infinity counts as much as the whole tree.

@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr int buckets = 12;
-constexpr int most_levels = 32;  // bits of a trail
+constexpr int most_levels = 32;  // MOST_LIGHT_LEVELS of the kernel
 
 glm::dvec3 center(const LightBounds& b) { return 0.5 * (b.lower + b.upper); }
 
@@ -32,6 +32,8 @@ double lit_solid_angle(const LightBounds& b) {
            0.5 * pi * (2.0 * w * std::sin(o) - std::cos(o - 2.0 * w) - 2.0 * o * std::sin(o) + std::cos(o));
 }
 
+double cost_of(const LightBounds& b) { return b.intensity * lit_solid_angle(b) * surface_area(b); }
+
 struct Bucket {
     LightBounds bounds;
     std::size_t count = 0;
@@ -40,9 +42,16 @@ struct Bucket {
         bounds = count == 0 ? b : light_bounds_union(bounds, b);
         count += n;
     }
-    double cost() const {
-        return count == 0 ? 0.0 : bounds.intensity * lit_solid_angle(bounds) * surface_area(bounds);
-    }
+    double cost() const { return count == 0 ? 0.0 : cost_of(bounds); }
+};
+
+// A node of the binary tree.
+struct Part {
+    LightBounds bounds;
+    std::size_t first = 0, last = 0;  // its lights in the builder's order
+    std::size_t child = 0;            // first of two, side by side; 0: a leaf
+
+    std::size_t lights() const { return last - first; }
 };
 
 struct Split {
@@ -59,9 +68,14 @@ public:
 
     LightTree run() {
         if (lights_.empty()) return {};
-        tree_.trails.resize(lights_.size());
-        tree_.nodes.emplace_back();
-        build(0, 0, order_.size(), 0, 0);
+        parts_.reserve(2 * lights_.size());
+        parts_.emplace_back();
+        build(0, 0, order_.size(), 0);
+        // Importances stay far from the largest and smallest floats, whatever the unit of radiance.
+        const double intensity = parts_[0].bounds.intensity;
+        per_intensity_ = intensity > 0.0 ? 1.0 / intensity : 0.0;
+        tree_.places.resize(lights_.size());
+        collapse(0, LIGHT_ROOT, 1);
         return std::move(tree_);
     }
 
@@ -134,40 +148,79 @@ private:
         return static_cast<std::size_t>(middle - order_.begin());
     }
 
-    LightBounds build(std::size_t node, std::size_t first, std::size_t last, int level, Uint32 trail) {
-        tree_.depth = std::max(tree_.depth, level);
-        LightBounds bounds;
+    void build(std::size_t at, std::size_t first, std::size_t last, int level) {
+        parts_[at].first = first;
+        parts_[at].last = last;
         if (last - first == 1) {
-            bounds = lights_[order_[first]];
-            tree_.trails[order_[first]] = trail;
-            tree_.nodes[node].child = LIGHT_LEAF | order_[first];
-        } else {
-            const std::size_t middle = divide(first, last, level);
-            const std::size_t child = tree_.nodes.size();
-            tree_.nodes.resize(child + 2);
-            tree_.nodes[node].child = static_cast<Uint32>(child);
-            const LightBounds a = build(child, first, middle, level + 1, trail);
-            const LightBounds b = build(child + 1, middle, last, level + 1, trail | (1U << level));
-            bounds = light_bounds_union(a, b);
+            parts_[at].bounds = lights_[order_[first]];
+            return;
         }
-        store(tree_.nodes[node], bounds);
-        return bounds;
+        const std::size_t middle = divide(first, last, level);
+        const std::size_t child = parts_.size();
+        parts_.resize(child + 2);
+        parts_[at].child = child;
+        build(child, first, middle, level + 1);
+        build(child + 1, middle, last, level + 1);
+        parts_[at].bounds = light_bounds_union(parts_[child].bounds, parts_[child + 1].bounds);
     }
 
-    static void store(LightNode& node, const LightBounds& b) {
+    // Up to eight parts that make up this one: the dearest is opened, again and again. Of those that cost nothing, as lights in
+    // one place, the one of most lights.
+    std::vector<std::size_t> open(std::size_t part) const {
+        std::vector<std::size_t> open{part};
+        const auto dearness = [&](std::size_t i) {
+            const Part& p = parts_[i];
+            return p.child == 0 ? std::pair(-1.0, std::size_t{0}) : std::pair(cost_of(p.bounds), p.lights());
+        };
+        while (open.size() < LIGHT_CHILDREN) {
+            const auto dearest = std::ranges::max_element(open, {}, dearness);
+            const std::size_t child = parts_[*dearest].child;
+            if (child == 0) break;
+            *dearest = child;
+            open.insert(dearest + 1, child + 1);
+        }
+        return open;
+    }
+
+    void collapse(std::size_t part, Uint32 place, int level) {
+        tree_.depth = std::max(tree_.depth, level);
+        const std::size_t node = tree_.nodes.size();
+        tree_.nodes.emplace_back();
+        tree_.nodes[node].place = place;
+        std::size_t i = 0;
+        for (const std::size_t child : open(part)) {
+            const Part& p = parts_[child];
+            const auto here = static_cast<Uint32>(LIGHT_PLACE(node, i));
+            store(tree_.nodes[node], i, p.bounds);
+            if (p.child == 0) {
+                tree_.places[order_[p.first]] = here;
+                tree_.nodes[node].child[i] = LIGHT_LEAF | order_[p.first];
+            } else {
+                tree_.nodes[node].child[i] = static_cast<Uint32>(tree_.nodes.size());
+                collapse(child, here, level + 1);
+            }
+            ++i;
+        }
+    }
+
+    void store(LightNode& node, std::size_t i, const LightBounds& b) const {
         const glm::vec3 c(center(b));
         const glm::vec3 axis(b.axis);
-        node.center = {c.x, c.y, c.z};
-        node.radius = static_cast<float>(0.5 * glm::length(b.upper - b.lower));
-        node.axis = {axis.x, axis.y, axis.z};
-        node.cos_spread = static_cast<float>(std::cos(b.spread));
-        node.sin_spread = b.spread >= pi ? 0.0F : static_cast<float>(std::sin(b.spread));
-        node.cos_emission = static_cast<float>(std::cos(b.emission));
-        node.intensity = static_cast<float>(b.intensity);
+        node.center_x[i] = c.x, node.center_y[i] = c.y, node.center_z[i] = c.z;
+        node.radius[i] = static_cast<float>(0.5 * glm::length(b.upper - b.lower));
+        node.axis_x[i] = axis.x, node.axis_y[i] = axis.y, node.axis_z[i] = axis.z;
+        node.cos_spread[i] = static_cast<float>(std::cos(b.spread));
+        node.sin_spread[i] = b.spread >= pi ? 0.0F : static_cast<float>(std::sin(b.spread));
+        node.cos_emission[i] = static_cast<float>(std::cos(b.emission));
+        // However dim, it has a chance.
+        const float least = b.intensity > 0.0 ? std::numeric_limits<float>::min() : 0.0F;
+        node.intensity[i] = std::max(static_cast<float>(b.intensity * per_intensity_), least);
     }
 
     std::span<const LightBounds> lights_;
     std::vector<Uint32> order_;
+    std::vector<Part> parts_;
+    double per_intensity_ = 0.0;
     LightTree tree_;
 };
 
@@ -206,7 +259,7 @@ LightBounds light_bounds_union(const LightBounds& a, const LightBounds& b) {
 }
 
 LightTree build_light_tree(std::span<const LightBounds> lights) {
-    if (lights.size() > (std::size_t{1} << 30)) throw std::invalid_argument("a light tree holds 2^30 lights at the most");
+    if (lights.size() > (std::size_t{1} << 28)) throw std::invalid_argument("a light tree holds 2^28 lights at the most");
     return Builder(lights).run();
 }
 

@@ -1,6 +1,7 @@
-// A binary tree over the lights that have a place, by which a light is chosen for a point: at each node the point's bounds on
-// what either half could send it decide. Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive
-// Tree Splitting"; kernels/lights/light_tree.h walks it.
+// A tree over the lights that have a place, by which a light is chosen for a point: at each node the point's bounds on what each
+// of up to eight parts could send it decide. Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive
+// Tree Splitting"; the binary tree of theirs, its dearest nodes opened until there are eight side by side.
+// kernels/lights/light_tree.h walks it.
 #pragma once
 
 #include <span>
@@ -26,14 +27,13 @@ struct LightBounds {
 LightBounds light_bounds_union(const LightBounds& a, const LightBounds& b);
 
 struct LightTree {
-    // The root first, the children of a node side by side. Empty without lights.
+    // The root first. Empty without lights.
     std::vector<LightNode> nodes;
-    // Of each light: bit k says that the way to its leaf goes to the second child at level k.
-    std::vector<Uint32> trails;
-    int depth = 0;  // levels below the root, 32 at the most
+    std::vector<Uint32> places;  // of each light: LIGHT_PLACE of its leaf
+    int depth = 0;               // nodes on the longest way, 32 at the most
 };
 
-// The same lights give the same tree. At most 2^30 lights.
+// The same lights give the same tree. At most 2^28 lights.
 LightTree build_light_tree(std::span<const LightBounds> lights);
 
 }  // namespace wavelobe

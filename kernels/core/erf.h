@@ -31,13 +31,14 @@ INLINE Float lane_erf(Float x) {
 INLINE Float lane_erf_inverse(Float x) {
     Float w = -lane_log((ONE - x) * (ONE + x));
     Float t = w - 2.5f;
-    Float p = horner((Float)2.84963484e-08f, t, 3.44037971e-07f);
-    p = horner(p, t, -3.52805228e-06f);
-    p = horner(p, t, -4.40051645e-06f);
-    p = horner(p, t, 0.000218596688f);
-    p = horner(p, t, -0.00125369395f);
-    p = horner(p, t, -0.00417769374f);
-    p = horner(p, t, 0.246640712f);
+    Float p = horner((Float)-8.23752977e-09f, t, 2.81904065e-08f);
+    p = horner(p, t, 4.59958073e-07f);
+    p = horner(p, t, -3.52366942e-06f);
+    p = horner(p, t, -4.9435007e-06f);
+    p = horner(p, t, 0.000218577217f);
+    p = horner(p, t, -0.00125275564f);
+    p = horner(p, t, -0.00417766813f);
+    p = horner(p, t, 0.24664028f);
     p = horner(p, t, 1.50140941f);
     t = sqrt(w) - 3.0f;
     Float q = horner((Float)-0.000206755343f, t, 0.000101618316f);

@@ -85,6 +85,12 @@ INLINE Float madd(Float a, Float b, Float c) {
     return a * b + c;
 }
 
+// The same for eight values of one ray or path, whatever LANES is.
+INLINE float8 madd8(float8 a, float8 b, float8 c) {
+#pragma OPENCL FP_CONTRACT ON
+    return a * b + c;
+}
+
 // Bit i is set where lane i of the mask is true.
 INLINE uint lane_bits8(int8 m) {
 #if WAVELOBE_AVX512
@@ -151,11 +157,38 @@ INLINE uint lowest_bit(uint bits) {
 #endif
 }
 
+#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
+
 // Asks for a line of memory that will be read soon; where there is no such instruction, waiting for it is the way.
 INLINE void fetch_line(ulong address) {
 #if !defined(__SPIR__) && __has_builtin(__builtin_prefetch)
     __builtin_prefetch((const void *)address);
 #endif
+}
+
+// ---- lanes as arrays, for what goes lane by lane -------------------------------------------------------------
+
+typedef struct {
+    float value[LANES] __attribute__((aligned(64)));
+} LaneFloats;
+
+typedef struct {
+    uint value[LANES] __attribute__((aligned(64)));
+} LaneUints;
+
+#define LANES_OF(floats) (*(const Float *)(floats).value)
+#define UINTS_OF(uints) (*(const UInt *)(uints).value)
+
+INLINE LaneFloats lane_floats(Float v) {
+    LaneFloats a;
+    *(Float *)a.value = v;
+    return a;
+}
+
+INLINE LaneUints lane_uints(UInt v) {
+    LaneUints a;
+    *(UInt *)a.value = v;
+    return a;
 }
 
 // ---- unaligned access to LANES consecutive values ------------------------------------------------

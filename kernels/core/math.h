@@ -71,7 +71,7 @@ INLINE void lane_sin_cos(Float x, Float *s, Float *c) {
     Float sin_r = madd(p, z * r, r_rest) + r;
     p = horner((Float)2.44323273e-05f, z, -0.00138873095f);
     p = horner(p, z, 0.0416666456f);
-    Float cos_r = madd(p, z * z, madd(z, (Float)-0.5f, ONE));
+    Float cos_r = madd(p, z * z, -(r * r_rest)) + madd(z, (Float)-0.5f, ONE);
     turn_by_quadrants(sin_r, cos_r, as_UInt(t), s, c);
 }
 

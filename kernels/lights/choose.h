@@ -46,9 +46,9 @@
      parameters->light_count, parameters->finite_light_count}
 
 #if HAS_LIGHT_TREE
-// Lights at infinity by their share, the others by the tree. `in->light` is the light; the result its probability, zero where
-// none shines. `u_deep` is a second number for trees deeper than the digits of the first.
-INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_deep) {
+// In the wanted lanes: lights at infinity by their share, the others by the tree. `in->light` is the light; the result its
+// probability, zero where none shines. `u_deep` is a second number for trees deeper than the digits of the first.
+INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_deep, Int wanted) {
     Float below = ZERO;
     UInt at_infinity = (UInt)in->finite_light_count;
     Float probability = ONE;
@@ -63,7 +63,7 @@ INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_de
     }
     Float rest = (u - below) / (1.0f - below);
     UInt light;
-    Float walked = walk_light_tree(in->light_tree, receiver, LESSER(rest, (Float)BELOW_ONE), u_deep, &light);
+    Float walked = walk_light_tree(in->light_tree, receiver, LESSER(rest, (Float)BELOW_ONE), u_deep, wanted & !chosen, &light);
     in->light = SELECT(chosen, at_infinity, light);
     return SELECT(chosen, probability, (1.0f - below) * walked);
 }
@@ -72,8 +72,8 @@ INLINE Float choose_light(LightInput *in, Receiver receiver, Float u, Float u_de
 INLINE Float placed_light_probability(LightInput in, Receiver receiver, Int wanted) {
     Float below = ZERO;
     for (uint i = in.finite_light_count; i < in.light_count; i++) below += (Float)in.lights[i].selection_probability;
-    UInt trail = as_UInt(light_field(in, trail));
-    return (1.0f - below) * light_tree_probability(in.light_tree, receiver, trail, wanted);
+    UInt place = as_UInt(light_field(in, place));
+    return (1.0f - below) * light_tree_probability(in.light_tree, receiver, place, wanted);
 }
 #else
 // Chooses by power: Walker's alias method. `in->light` is the light; the result its probability.

@@ -22,15 +22,9 @@
 #undef TEST
 
 typedef struct {
-    float value[LANES] __attribute__((aligned(64)));
-} LaneFloats;
-
-typedef struct {
     LaneFloats ox, oy, oz, dx, dy, dz, limit; // unit directions; what lies at the limit or beyond is not seen
     uint from[LANES] __attribute__((aligned(64)));
 } RayGroup;
-
-#define LANES_OF(floats) (*(const Float *)(floats).value)
 
 INLINE Ray group_ray(const RayGroup *g, uint i) {
     Ray r = {g->ox.value[i], g->oy.value[i], g->oz.value[i], g->dx.value[i], g->dy.value[i], g->dz.value[i], g->limit.value[i],

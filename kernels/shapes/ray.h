@@ -32,8 +32,6 @@ typedef struct {
 #define TRIANGLE_NUMBERS(entries) (entries)
 #endif
 
-#define POP_LOWEST_BIT(mask, index) uint index = lowest_bit(mask); mask &= mask - 1u
-
 // Rays that are not numbers hit nothing. The box test must not see them: which of its comparisons a NaN passes is chance.
 INLINE int is_finite_ray(const Ray *r) {
     return (r->ox - r->ox) + (r->oy - r->oy) + (r->oz - r->oz) + (r->dx - r->dx) + (r->dy - r->dy) + (r->dz - r->dz) == 0.0f;

@@ -28,23 +28,29 @@ struct Light {
     float cos_cutoff, cos_beam;   // spot
     Uint32 smooth_cone;           // spot: 1: between the angles the square of what is linear in the cosine; 0: linear in the angle
     float inverse_range;          // point, spot: over the distance from which on there is no light, 1 / m; 0: none
-    Uint32 trail;                 // way to its leaf in the light tree, a bit a level, lowest first
+    Uint32 place;                 // of its leaf in the light tree: LIGHT_PLACE
 };
 WAVELOBE_CHECK_SIZE(Light, 132);
 
-// A node of the light tree: bounds on the lights below it.
+#define LIGHT_CHILDREN 8
+
+// A node of the light tree: bounds on the lights below each of its children.
 struct LightNode {
-    struct Packed3 center; // of a sphere about them
-    float radius;
-    struct Packed3 axis;   // unit, of the cone that holds their normals
-    float cos_spread, sin_spread; // of its half angle
-    float cos_emission;    // of the angle off a normal up to which they shine
-    float intensity;       // the greatest of all together, W / sr by luminance
-    Uint32 child;          // first of two neighbouring nodes, or LIGHT_LEAF | light
+    float center_x[LIGHT_CHILDREN], center_y[LIGHT_CHILDREN], center_z[LIGHT_CHILDREN]; // of a sphere about them
+    float radius[LIGHT_CHILDREN];
+    float axis_x[LIGHT_CHILDREN], axis_y[LIGHT_CHILDREN], axis_z[LIGHT_CHILDREN]; // unit, of the cone that holds their normals
+    float cos_spread[LIGHT_CHILDREN], sin_spread[LIGHT_CHILDREN]; // of its half angle
+    float cos_emission[LIGHT_CHILDREN]; // of the angle off a normal up to which they shine
+    float intensity[LIGHT_CHILDREN];    // the greatest of all together by luminance, as a share of the tree's; 0: no child
+    Uint32 child[LIGHT_CHILDREN];       // a node, or LIGHT_LEAF | light
+    Uint32 place;                       // of this node: LIGHT_PLACE(parent, which child), or LIGHT_ROOT
+    Uint32 padding[7];
 };
-WAVELOBE_CHECK_SIZE(LightNode, 48);
+WAVELOBE_CHECK_SIZE(LightNode, 416);
 
 #define LIGHT_LEAF 0x80000000u
+#define LIGHT_ROOT 0xffffffffu
+#define LIGHT_PLACE(node, child) ((node) * LIGHT_CHILDREN + (child))
 
 // An analytic shape: unit sphere, unit disk in z = 0, or unit cylinder along z in [0, 1], under an affine map.
 struct Analytic {

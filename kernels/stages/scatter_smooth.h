@@ -31,7 +31,7 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
 #endif
     sample_2d(sample, vertex_pair(path->depth, PAIR_LIGHT), &u1, &u2);
 #if HAS_LIGHT_TREE
-    Float choice = choose_light(&in, receiver_of(surface->position, receiver), u_light, u_deep);
+    Float choice = choose_light(&in, receiver_of(surface->position, receiver), u_light, u_deep, path->live);
 #else
     Float choice = choose_light(&in, u_light);
 #endif

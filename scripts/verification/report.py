@@ -76,6 +76,9 @@ def write(rows, path):
 
 def main():
     rows = [json.loads(line) for line in Path(sys.argv[1]).read_text().splitlines()]
+    unknown = {r["section"] for r in rows} - set(SECTIONS)
+    if unknown:
+        sys.exit(f"no such section of the report: {', '.join(sorted(unknown))}; known are {', '.join(SECTIONS)}")
     failing = [r for r in rows if not r.get("holds", True)]
     for r in failing:
         print(f"fails: {r['claim']}: {number(r['measured'])} {r['unit']}, bound {number(r['bound'])} ({r['worst']})", file=sys.stderr)

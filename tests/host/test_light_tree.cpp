@@ -10,65 +10,80 @@
 namespace wavelobe::test {
 namespace {
 
-glm::dvec3 unpacked(const Packed3& v) { return {v.x, v.y, v.z}; }
-
-// Every light of a subtree lies in the node's sphere and cone, and their intensities add up to the node's.
-struct Totals {
-    std::size_t lights = 0;
-    double intensity = 0.0;
-};
-
-Totals check_bounds(const LightTree& tree, std::span<const LightBounds> lights, std::size_t top, std::size_t node) {
-    const Uint32 child = tree.nodes[node].child;
-    if ((child & LIGHT_LEAF) == 0) {
-        const Totals a = check_bounds(tree, lights, top, child);
-        const Totals b = check_bounds(tree, lights, top, child + 1);
-        return {a.lights + b.lights, a.intensity + b.intensity};
+// All children of all nodes.
+template <class Visit>
+void for_each_child(const LightTree& tree, const Visit& visit) {
+    for (std::size_t node = 0; node < tree.nodes.size(); ++node) {
+        for (std::size_t i = 0; i < LIGHT_CHILDREN; ++i) visit(node, i);
     }
-    const LightBounds& light = lights[child & ~LIGHT_LEAF];
-    const LightNode& n = tree.nodes[top];
-    if (light.intensity > 0.0) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p((corner & 1) != 0 ? light.upper.x : light.lower.x,
-                               (corner & 2) != 0 ? light.upper.y : light.lower.y,
-                               (corner & 4) != 0 ? light.upper.z : light.lower.z);
-            EXPECT_LE(glm::length(p - unpacked(n.center)), static_cast<double>(n.radius) * (1.0 + 1e-6) + 1e-5);
-        }
-        const double spread = std::atan2(static_cast<double>(n.sin_spread), static_cast<double>(n.cos_spread));
-        EXPECT_LE(std::min(angle_between(light.axis, unpacked(n.axis)) + light.spread, std::numbers::pi), spread + 1e-5);
-        EXPECT_LE(static_cast<double>(n.cos_emission), std::cos(light.emission) + 1e-6);
-    }
-    return {1, light.intensity};
 }
 
-TEST(LightTree, NodesBoundTheirLights) {
+std::vector<Uint32> lights_below(const LightTree& tree, Uint32 child) {
+    if ((child & LIGHT_LEAF) != 0) return {child & ~LIGHT_LEAF};
+    std::vector<Uint32> below;
+    const LightNode& n = tree.nodes[child];
+    for (std::size_t i = 0; i < LIGHT_CHILDREN; ++i) {
+        if (!(n.intensity[i] > 0.0F)) continue;
+        const std::vector<Uint32> some = lights_below(tree, n.child[i]);
+        below.insert(below.end(), some.begin(), some.end());
+    }
+    return below;
+}
+
+void expect_bounded(const LightBounds& light, const LightNode& n, std::size_t i) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) != 0 ? light.upper.x : light.lower.x,
+                           (corner & 2) != 0 ? light.upper.y : light.lower.y,
+                           (corner & 4) != 0 ? light.upper.z : light.lower.z);
+        const glm::dvec3 c(n.center_x[i], n.center_y[i], n.center_z[i]);
+        EXPECT_LE(glm::length(p - c), static_cast<double>(n.radius[i]) * (1.0 + 1e-6) + 1e-5);
+    }
+    const double spread = std::atan2(static_cast<double>(n.sin_spread[i]), static_cast<double>(n.cos_spread[i]));
+    const glm::dvec3 axis(n.axis_x[i], n.axis_y[i], n.axis_z[i]);
+    EXPECT_LE(std::min(angle_between(light.axis, axis) + light.spread, std::numbers::pi), spread + 1e-5);
+    EXPECT_LE(static_cast<double>(n.cos_emission[i]), std::cos(light.emission) + 1e-6);
+}
+
+// Every light below a child lies in its sphere and cone, and their intensities add up to the child's.
+TEST(LightTree, ChildrenBoundTheirLights) {
     std::vector<LightBounds> lights = random_lights(200, 3);
     lights[7].intensity = lights[8].intensity = 0.0;
+    double all = 0.0;
+    for (const LightBounds& light : lights) all += light.intensity;
     const LightTree tree = build_light_tree(lights);
-    EXPECT_EQ(tree.nodes.size(), 2 * lights.size() - 1);
-    EXPECT_EQ(check_bounds(tree, lights, 0, 0).lights, lights.size());
-    for (std::size_t node = 0; node < tree.nodes.size(); ++node) {
-        const Totals totals = check_bounds(tree, lights, node, node);
-        EXPECT_NEAR(static_cast<double>(tree.nodes[node].intensity), totals.intensity, 1e-6 * totals.intensity);
-    }
+    EXPECT_LT(tree.nodes.size(), lights.size() / 2) << "nodes hold more than two";
+    EXPECT_EQ(lights_below(tree, 0).size(), lights.size() - 2);
+    for_each_child(tree, [&](std::size_t node, std::size_t i) {
+        const LightNode& n = tree.nodes[node];
+        if (!(n.intensity[i] > 0.0F)) return;
+        double sum = 0.0;
+        for (const Uint32 light : lights_below(tree, n.child[i])) {
+            expect_bounded(lights[light], n, i);
+            sum += lights[light].intensity;
+        }
+        EXPECT_NEAR(static_cast<double>(n.intensity[i]), sum / all, 1e-6 * sum / all);
+    });
 }
 
-TEST(LightTree, TrailsLeadToTheirLights) {
-    for (const std::size_t count : {1U, 2U, 3U, 1000U}) {
-        const std::vector<LightBounds> lights = random_lights(count, 4);
-        const LightTree tree = build_light_tree(lights);
+TEST(LightTree, PlacesAreThoseOfTheLights) {
+    for (const std::size_t count : {1U, 2U, 3U, 8U, 9U, 1000U}) {
+        const LightTree tree = build_light_tree(random_lights(count, 4));
+        ASSERT_EQ(tree.places.size(), count);
         for (std::size_t i = 0; i < count; ++i) {
-            Uint32 trail = tree.trails[i];
-            Uint32 child = tree.nodes[0].child;
-            for (; (child & LIGHT_LEAF) == 0; trail >>= 1) child = tree.nodes[child + (trail & 1U)].child;
-            EXPECT_EQ(child & ~LIGHT_LEAF, i);
-            EXPECT_EQ(trail, 0U);
+            Uint32 place = tree.places[i];
+            Uint32 child = LIGHT_LEAF | static_cast<Uint32>(i);
+            for (; place != LIGHT_ROOT; place = tree.nodes[child].place) {
+                const Uint32 node = place / LIGHT_CHILDREN;
+                ASSERT_EQ(tree.nodes[node].child[place % LIGHT_CHILDREN], child);
+                child = node;
+            }
+            EXPECT_EQ(child, 0U);
         }
     }
 }
 
-// Lights ever closer to a point would give one level each; lights in one place none to split by.
-TEST(LightTree, IsNeverDeeperThanATrail) {
+// Lights ever closer to a point would give a level for each few; lights in one place none to split by.
+TEST(LightTree, IsNeverDeeperThanTheWalk) {
     std::vector<LightBounds> lights = random_lights(3000, 5);
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const double x = i < 1000 ? std::exp2(-static_cast<double>(i)) : 0.25;
@@ -76,8 +91,8 @@ TEST(LightTree, IsNeverDeeperThanATrail) {
     }
     const LightTree tree = build_light_tree(lights);
     EXPECT_LE(tree.depth, 32);
-    EXPECT_GT(tree.depth, 12);
-    EXPECT_EQ(tree.nodes.size(), 2 * lights.size() - 1);
+    EXPECT_GT(tree.depth, 3);
+    EXPECT_EQ(lights_below(tree, 0).size(), lights.size());
 }
 
 // From anywhere, the probabilities add up to one, or to what is lost in subtrees where bounds promised more than there is.
@@ -86,10 +101,32 @@ TEST(LightTree, ProbabilitiesAddUp) {
     const LightTree tree = build_light_tree(lights);
     for (const glm::dvec3& p : {glm::dvec3(0.0), glm::dvec3(30.0, 2.0, 1.0), glm::dvec3(3.0, -9.0, 4.0)}) {
         double sum = 0.0;
-        for (const Uint32 trail : tree.trails) sum += reference_probability(tree.nodes, trail, ReferenceReceiver{p, {}});
+        for (const Uint32 place : tree.places) sum += reference_probability(tree.nodes, place, ReferenceReceiver{p, {}});
         EXPECT_LE(sum, 1.0 + 1e-12);
         EXPECT_GT(sum, 0.5);
     }
+}
+
+// Wherever a place on a light shines on a receiver, the light has a chance there.
+TEST(LightTree, ForgetsNoLightThatShines) {
+    const std::vector<LightBounds> lights = random_lights(300, 8);
+    const LightTree tree = build_light_tree(lights);
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const auto anywhere = [&](double size) { return size * glm::dvec3(unit(random), unit(random), unit(random)); };
+    int shining = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const std::size_t light = static_cast<std::size_t>(i) % lights.size();
+        const LightBounds& b = lights[light];
+        const glm::dvec3 from = 0.5 * (b.lower + b.upper) + 0.5 * anywhere(1.0) * (b.upper - b.lower);
+        const glm::dvec3 to = i % 2 == 0 ? anywhere(12.0) : from + anywhere(0.2);
+        const glm::dvec3 normal = glm::normalize(anywhere(1.0));
+        const double off_normal = std::max(angle_between(b.axis, to - from) - b.spread, 0.0);
+        if (off_normal >= b.emission || glm::dot(normal, from - to) <= 0.0) continue;
+        ++shining;
+        ASSERT_GT(reference_probability(tree.nodes, tree.places[light], ReferenceReceiver{to, normal}), 0.0) << i;
+    }
+    EXPECT_GT(shining, 20000);
 }
 
 // A near light is likelier than a far one of the same power, and one that looks away has no chance.
@@ -104,19 +141,19 @@ TEST(LightTree, FollowsDistanceAndDirection) {
     }
     const LightTree tree = build_light_tree(lights);
     const glm::dvec3 up(0.0, 1.0, 0.0);
-    const double near = reference_probability(tree.nodes, tree.trails[0], ReferenceReceiver{glm::dvec3(0.0), up});
-    const double far = reference_probability(tree.nodes, tree.trails[1], ReferenceReceiver{glm::dvec3(0.0), up});
+    const double near = reference_probability(tree.nodes, tree.places[0], ReferenceReceiver{glm::dvec3(0.0), up});
+    const double far = reference_probability(tree.nodes, tree.places[1], ReferenceReceiver{glm::dvec3(0.0), up});
     EXPECT_GT(near, 0.5);
     EXPECT_GT(near, 10.0 * far);
-    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[2], ReferenceReceiver{glm::dvec3(0.0), up}), 0.0);
-    EXPECT_EQ(reference_probability(tree.nodes, tree.trails[0], ReferenceReceiver{glm::dvec3(0.0), -up}), 0.0);
+    EXPECT_EQ(reference_probability(tree.nodes, tree.places[2], ReferenceReceiver{glm::dvec3(0.0), up}), 0.0);
+    EXPECT_EQ(reference_probability(tree.nodes, tree.places[0], ReferenceReceiver{glm::dvec3(0.0), -up}), 0.0);
 }
 
 TEST(LightTree, IsTheSameForTheSameLights) {
     const std::vector<LightBounds> lights = random_lights(500, 7);
     const LightTree a = build_light_tree(lights);
     const LightTree b = build_light_tree(lights);
-    EXPECT_EQ(a.trails, b.trails);
+    EXPECT_EQ(a.places, b.places);
     EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(LightNode)), 0);
 }
 

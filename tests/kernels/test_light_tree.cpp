@@ -15,7 +15,7 @@ constexpr float below_one = 0x1.fffffep-1F;
 struct Walk {
     Uint32 light;
     float probability;
-    float by_trail;     // of the same light
+    float by_place;     // of the same light
     // As the receiver's code has them:
     glm::vec3 normal, axis;
     float peak, diffuse;
@@ -41,7 +41,7 @@ std::vector<Walk> walk(const LightTree& tree, const std::vector<WalkQuery>& quer
     Probe probe(R"(
 #include "lights/light_tree.h"
 #define IN(k) load(query + i + (k) * n)
-kernel void run(global const struct LightNode *tree, global const uint *trails, global const float *query, uint n,
+kernel void run(global const struct LightNode *tree, global const uint *places, global const float *query, uint n,
                 global float *out) {
     size_t i = get_global_id(0) * LANES;
     Vec3 normal = vec3(IN(3), IN(4), IN(5));
@@ -52,11 +52,11 @@ kernel void run(global const struct LightNode *tree, global const uint *trails, 
 #endif
     Receiver r = receiver_of(vec3(IN(0), IN(1), IN(2)), code);
     UInt light;
-    Float p = walk_light_tree(tree, r, IN(7), IN(8), &light);
-    UInt trail = gather_uint(trails, light);
+    Float p = walk_light_tree(tree, r, IN(7), IN(8), TRUE_MASK, &light);
+    UInt place = gather_uint(places, light);
     store(out + i, as_Float(light));
     store(out + i + n, p);
-    store(out + i + 2 * n, light_tree_probability(tree, r, trail, TRUE_MASK));
+    store(out + i + 2 * n, light_tree_probability(tree, r, place, TRUE_MASK));
     store(out + i + 3 * n, r.normal.x);
     store(out + i + 4 * n, r.normal.y);
     store(out + i + 5 * n, r.normal.z);
@@ -82,14 +82,14 @@ kernel void run(global const struct LightNode *tree, global const uint *trails, 
     std::vector<float> out(11 * n);
     const auto count = static_cast<cl_uint>(n);
     const std::vector<LightNode> nodes = tree.nodes;
-    const std::vector<Uint32> trails = tree.trails;
+    const std::vector<Uint32> places = tree.places;
     const std::vector<float> query = data;
-    probe.run("run", n / static_cast<std::size_t>(lanes), nodes, trails, query, count, out);
+    probe.run("run", n / static_cast<std::size_t>(lanes), nodes, places, query, count, out);
     std::vector<Walk> walks(queries.size());
     for (std::size_t i = 0; i < walks.size(); ++i) {
         std::memcpy(&walks[i].light, &out[i], sizeof(float));
         walks[i].probability = out[n + i];
-        walks[i].by_trail = out[2 * n + i];
+        walks[i].by_place = out[2 * n + i];
         walks[i].normal = {out[3 * n + i], out[4 * n + i], out[5 * n + i]};
         walks[i].axis = {out[6 * n + i], out[7 * n + i], out[8 * n + i]};
         walks[i].peak = glossy ? out[9 * n + i] : 0.0F;
@@ -133,9 +133,9 @@ TEST_P(LightTreeWalks, ProbabilitiesAreThoseOfDoublePrecision) {
             ++dark;
             continue;
         }
-        ASSERT_EQ(w.probability, w.by_trail) << "a hit weighs the sample that would have made it by another number";
+        ASSERT_EQ(w.probability, w.by_place) << "a hit weighs the sample that would have made it by another number";
         const double expected =
-            reference_probability(tree.nodes, tree.trails[w.light], w.receiver(queries[i].position, queries[i].any_side));
+            reference_probability(tree.nodes, tree.places[w.light], w.receiver(queries[i].position, queries[i].any_side));
         // At the horizon a float's cosine keeps few digits.
         strays += std::abs(static_cast<double>(w.probability) / expected - 1.0) < 1e-3 ? 0 : 1;
     }
@@ -154,8 +154,8 @@ TEST_P(LightTreeWalks, CountsFollowTheProbabilities) {
         std::vector<double> expected;
         std::vector<double> counts(lights.size() + 1, 0.0);
         double sum = 0.0;
-        for (const Uint32 trail : tree.trails) {
-            expected.push_back(reference_probability(tree.nodes, trail, walks[0].receiver(fixed.position, any_side)));
+        for (const Uint32 place : tree.places) {
+            expected.push_back(reference_probability(tree.nodes, place, walks[0].receiver(fixed.position, any_side)));
             sum += expected.back();
         }
         expected.push_back(std::max(1.0 - sum, 0.0));  // walks that end where no light shines

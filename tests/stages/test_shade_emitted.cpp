@@ -80,7 +80,7 @@ void expect_weighted_against_light_sample(StageBench& bench) {
             const struct Light& chosen = bench.scene().lights[lights[triangle]];
             const double choice = bench.scene().light_tree.empty()
                                       ? static_cast<double>(chosen.selection_probability)
-                                      : reference_probability(bench.scene().light_tree, chosen.trail,
+                                      : reference_probability(bench.scene().light_tree, chosen.place,
                                                               ReferenceReceiver{hit - 4.0 * glm::normalize(glm::dvec3(direction)), {}});
             ASSERT_GT(choice, 0.0);
             const double light = choice * 16.0 / (cosine * areas[triangle]);

@@ -1,6 +1,7 @@
 // The probability with which a light tree chooses a light, in double precision and with angles instead of cosines.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -29,40 +30,39 @@ struct ReferenceReceiver {
     double diffuse = 1.0;
 };
 
-inline double reference_importance(const LightNode& n, const ReferenceReceiver& receiver) {
-    const glm::dvec3& p = receiver.position;
-    const std::optional<glm::dvec3>& normal = receiver.normal;
-    const glm::dvec3 way = glm::dvec3(n.center.x, n.center.y, n.center.z) - p;
-    const double r = static_cast<double>(n.radius);
-    const double d = glm::length(way);
-    const bool outside = d > r;
-    const double bound = outside ? std::asin(r / d) : 0.0;
-    const auto cosine = [&](double angle) {
-        return (outside ? std::cos(std::max(angle - bound, 0.0)) : 1.0) + horizon_slack;
-    };
-    const double spread = std::atan2(static_cast<double>(n.sin_spread), static_cast<double>(n.cos_spread));
-    const double off_axis = angle_between({n.axis.x, n.axis.y, n.axis.z}, -way);
-    const double emitted = cosine(std::max(off_axis - spread, 0.0));
-    if (emitted <= static_cast<double>(n.cos_emission)) return 0.0;
+inline double reference_importance(const LightNode& n, std::size_t i, const ReferenceReceiver& receiver) {
+    if (n.intensity[i] == 0.0F) return 0.0;
+    const auto d64 = [](float x) { return static_cast<double>(x); };
+    const glm::dvec3 way = glm::dvec3(n.center_x[i], n.center_y[i], n.center_z[i]) - receiver.position;
+    const double r = d64(n.radius[i]);
+    const double distance = std::max(glm::length(way), r);
+    // The cosine of an angle at the centre, and what the sphere of bounds may add to it.
+    const auto bound = [&](double angle) { return glm::length(way) * std::cos(angle) / distance + r / distance; };
+    const double spread = std::atan2(d64(n.sin_spread[i]), d64(n.cos_spread[i]));
+    const double off_axis = angle_between({n.axis_x[i], n.axis_y[i], n.axis_z[i]}, -way);
+    const double emitted = (off_axis <= spread ? 1.0 + r / distance : bound(off_axis - spread)) + horizon_slack;
+    const double limit = d64(n.cos_emission[i]);
+    if (emitted + std::abs(limit) * r / distance <= limit) return 0.0;
     double received = 1.0;
-    if (normal) {
-        received = receiver.diffuse * std::max(cosine(angle_between(*normal, way)), 0.0);
-        const double off_mirror = outside ? std::max(angle_between(receiver.axis, way) - bound, 0.0) : 0.0;
-        const double x = 1.0 + 4.0 * receiver.peak * std::pow(std::tan(0.5 * off_mirror), 2.0);
+    if (receiver.normal) {
+        received = receiver.diffuse * std::clamp(bound(angle_between(*receiver.normal, way)) + horizon_slack, 0.0, 1.0);
+        const double seen = glm::length(way) > r ? std::asin(r / distance) : std::numbers::pi;
+        const double off_mirror = std::max(angle_between(receiver.axis, way) - seen, 0.0);
+        const double tangent = std::sin(off_mirror) / (1.0 + std::cos(off_mirror) + horizon_slack);
+        const double x = 1.0 + 4.0 * receiver.peak * tangent * tangent;
         if (received > 0.0) received += receiver.peak / (x * x);
     }
-    return static_cast<double>(n.intensity) * std::max(emitted, horizon_slack) * received / std::max(d * d, r * r);
+    return d64(n.intensity[i]) * std::clamp(emitted, horizon_slack, 1.0) * received / (distance * distance);
 }
 
-inline double reference_probability(std::span<const LightNode> tree, Uint32 trail, const ReferenceReceiver& receiver) {
+inline double reference_probability(std::span<const LightNode> tree, Uint32 place, const ReferenceReceiver& receiver) {
     double probability = 1.0;
-    for (Uint32 child = tree[0].child; (child & LIGHT_LEAF) == 0; trail >>= 1) {
-        const double a = reference_importance(tree[child], receiver);
-        const double b = reference_importance(tree[child + 1], receiver);
-        if (a + b <= 0.0) return 0.0;
-        const Uint32 second = trail & 1U;
-        probability *= (second != 0 ? b : a) / (a + b);
-        child = tree[child + second].child;
+    for (; place != LIGHT_ROOT; place = tree[place / LIGHT_CHILDREN].place) {
+        const LightNode& node = tree[place / LIGHT_CHILDREN];
+        double all = 0.0;
+        for (std::size_t i = 0; i < LIGHT_CHILDREN; ++i) all += reference_importance(node, i, receiver);
+        if (all <= 0.0) return 0.0;
+        probability *= reference_importance(node, place % LIGHT_CHILDREN, receiver) / all;
     }
     return probability;
 }

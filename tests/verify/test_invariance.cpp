@@ -218,8 +218,8 @@ TEST(Torture, NoSampleIsLost) {
         Scene scene = many_features_scene(width, height);
         torture.change(scene);
         RenderSettings settings;
-        settings.samples_per_pixel = quick_or_full(32, 25000);
-        settings.time_limit = quick_or_full(0.0, 30.0);
+        settings.samples_per_pixel = quick_or_full(32, 26000);
+        settings.time_limit = quick_or_full(0.0, 120.0);  // a machine in the way is no reason to wait for ever
         Renderer renderer(device(), scene, settings);
         EXPECT_TRUE(renderer.render());
         const RenderStats& stats = renderer.stats();
@@ -231,6 +231,7 @@ TEST(Torture, NoSampleIsLost) {
     }
     claim.count(samples);
     claim.at_most(0.0);
+    if (verify_fully()) EXPECT_GE(samples, std::uint64_t{1'000'000'000});
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ TEST_P(LeavingShapes, MeetTheNextSurfaceAndNotTheirOwn) {
                 const float gap = std::max(1e-5F, 4e-6F * away);
                 // There vertices are so coarse that the two surfaces are not parallel.
                 const float tangent = away <= 30.0F ? 1e-4F : 0.25F;
-                const Counts found = count(kind, p, gap, tangent, few, quick_or_full(1, 8), random);
+                const Counts found = count(kind, p, gap, tangent, few, quick_or_full(1, 24), random);
                 rays += found.rays;
                 const auto where = [&] { return "size " + std::to_string(size) + ", " + std::to_string(away) + " sizes away"; };
                 again.observe(static_cast<double>(found.again), where);

@@ -83,7 +83,7 @@ TEST_P(ClosedMeshes, LetNoRayPass) {
         for (glm::vec3& v : shape.mesh.vertices) v = v * p.scale + center;
         const Bvh bvh = build_bvh(shape.mesh.triangles(), {}, BvhQuality::split, 1);
         TraversalProbe alone, in_groups(false, true, 16, 8);
-        Claim claim("Stability", fmt::format("{}, {}: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
+        Claim claim("Numerical stability", fmt::format("{}, {}: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
                     "rays");
         Generator random(1);
         std::size_t passed = 0;
@@ -175,7 +175,7 @@ TEST(RandomRays, HitWhatTheyHitInEmbree) {
     for (const Mesh& mesh : meshes) {
         const Embree embree(mesh.triangles);
         const Bvh bvh = build_bvh(mesh.triangles, {}, BvhQuality::split, 1);
-        Claim claim("Stability", std::string(mesh.name) + ": random rays that hit otherwise than in Embree, and wrongly", "rays");
+        Claim claim("Numerical stability", std::string(mesh.name) + ": random rays that hit otherwise than in Embree, and wrongly", "rays");
         std::size_t unlike = 0, wrong = 0;
         std::string first;
         const std::size_t batches = quick_or_full<std::size_t>(3, 1000);
