@@ -57,7 +57,7 @@ struct FeatureSet {
     int material_levels = 0;    // of materials that hold others, at the most
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material
-    bool sides_by_winding = false;
+    bool culled_backs = false;
     bool lobe_choice = false;  // the class of lobes depends on more than the shape
     bool mixture = false;      // some material is both glossy and diffuse
     bool ggx = false;

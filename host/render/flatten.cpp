@@ -133,9 +133,9 @@ private:
         const std::uint32_t front = classes(s.front_material);
         const std::uint32_t back = classes(s.back_material);
         s.flags = front | back | media_.add_shape(shape, visible);
-        if (shape.material.sided_by_winding) s.flags |= SHAPE_SIDED_BY_WINDING;
+        if (shape.material.culled_behind) s.flags |= SHAPE_CULLED_BEHIND;
         FeatureSet& f = out_.features;
-        f.sides_by_winding = f.sides_by_winding || shape.material.sided_by_winding;
+        f.culled_backs = f.culled_backs || shape.material.culled_behind;
         f.unlike_sides = f.unlike_sides || s.back_material != s.front_material;
         // A black side ends a path in any queue; two sides of different classes must be told apart before.
         f.lobe_choice = f.lobe_choice || (front != 0 && back != 0 && front != back);

@@ -49,7 +49,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TRANSMISSION", f.transmission);
     out.define("HAS_LAYERED_LOBES", has_bit(f.lobes, LOBE_LAYERED_METALLIC_ROUGHNESS));
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
-    out.define("HAS_SIDES_BY_WINDING", f.sides_by_winding);
+    out.define("HAS_CULLED_BACKS", f.culled_backs);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);

@@ -43,6 +43,8 @@ public:
         add_punctual_lights(document_, tree_, scene_);
         place_camera(document_, tree_, {options_.width, options_.height}, scene_);
         if (!document_.faults.empty()) document_.faults.raise();
+        if (const std::size_t count = leave_out_backs(scene_, single_sided_); count > 0)
+            document_.warn(fmt::format("{}: {} triangles of single-sided materials show the camera their backs alone and are left out", document_.file, count));
         clear_backs(scene_, single_sided_);
         part_media(scene_, volumes_);
         add_light();

@@ -174,7 +174,9 @@ struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
     Opacity opacity{};
-    bool sided_by_winding = false;  // which side is seen follows from the winding of triangles, otherwise from shading normals
+    // The back, told by the winding of triangles and not by shading normals, is what the camera sees, and paths that only delta lobes
+    // have turned since; to all others both sides are the front.
+    bool culled_behind = false;
 };
 
 // ---- shapes --------------------------------------------------------------------------------------

@@ -297,9 +297,10 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
 #if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);
     Int from_back = behind;
-#if HAS_SIDES_BY_WINDING
-    Int by_winding = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_SIDED_BY_WINDING) != (UInt)0u;
-    from_back = SELECT(by_winding, dot3(out->normal, p->direction) > 0.0f, behind);
+#if HAS_CULLED_BACKS
+    // Culling is the eye's: what lights the scene finds the surface on both sides, as light samples do.
+    Int culled = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_CULLED_BEHIND) != (UInt)0u;
+    from_back = SELECT(culled, (p->pdf < 0.0f) & (dot3(out->normal, p->direction) > 0.0f), behind);
 #endif
     out->material = SELECT(from_back, back, front);
 #else
