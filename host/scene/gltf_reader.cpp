@@ -15,6 +15,7 @@
 #include "scene/gltf/lights.h"
 #include "scene/gltf/materials.h"
 #include "scene/gltf/pose.h"
+#include "scene/gltf/validity.h"
 #include "scene/gltf/volumes.h"
 
 namespace wavelobe {
@@ -37,6 +38,9 @@ public:
     Scene run() {
         animate(document_, accessors_, options_.frame_time, tree_);
         tree_.place();
+        check_extension_objects(document_);
+        check_primitives(document_, accessors_);
+        check_skins(document_, accessors_, tree_);
         meshes_.check();
         materials_.check();
         add_shapes();
