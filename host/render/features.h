@@ -50,6 +50,7 @@ struct FeatureSet {
     bool instances = false;
     bool vertex_tangents = false;    // some vertices have tangents of their own
     bool anisotropy = false;
+    bool coat_normals = false;       // some coats have normals of their own
     bool normal_maps = false;   // or bump maps
     bool bump_maps = false;
     bool nested_sides = false;  // materials inside others differ between sides or are turned over

@@ -99,7 +99,7 @@ private:
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
-        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.vertex_opacity || f.layers != 0);
+        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.coat_normals || f.vertex_opacity || f.layers != 0);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
         out_.uvs = {};

@@ -248,7 +248,9 @@ void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
         Parameter f0 = m.specular_color;
         f0.value = reflectance;
         out.extension = add_extension(MetallicRoughnessLayers{scalar(m.clearcoat), scalar(m.clearcoat_roughness), scalar(m.transmission),
-                                                              scalar(m.specular), rgb(f0), rgb(m.anisotropy)});
+                                                              scalar(m.specular), rgb(f0), rgb(m.anisotropy),
+                                                              rgb(m.clearcoat_normal.value_or(Parameter{Rgb{0.5F, 0.5F, 1.0F}, nullptr}))});
+        out_.features.coat_normals = out_.features.coat_normals || (m.clearcoat_normal && m.clearcoat.value.x > 0.0F);
         return;
     }
     out.lobes = bit(LOBE_METALLIC_ROUGHNESS);

@@ -38,7 +38,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
-    out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps);
+    out.define("HAS_COAT_NORMALS", f.coat_normals);
+    out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps || f.coat_normals);
     out.define("HAS_VERTEX_TANGENTS", f.vertex_tangents);
     out.define("HAS_NORMAL_MAPS", f.normal_maps);
     out.define("HAS_BUMP_MAPS", f.bump_maps);

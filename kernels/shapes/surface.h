@@ -103,6 +103,9 @@ typedef struct {
     Vec3 normal;   // geometric, unit
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
+#if HAS_COAT_NORMALS
+    Frame unmapped; // the frame before it was turned and tilted
+#endif
     Float u, v;    // texture coordinates
 #if HAS_SECOND_UVS
     Float second_u, second_v;
@@ -290,6 +293,9 @@ INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
 
 // The material of the side that is seen, and the frame turned to that side unless the material keeps it.
 INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
+#if HAS_COAT_NORMALS
+    out->unmapped = out->frame;
+#endif
     Vec3 back_along = negate(p->direction);
     out->wi = to_local(out->frame, back_along);
     Int behind = out->wi.z < 0.0f;

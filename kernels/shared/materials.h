@@ -94,8 +94,10 @@ struct MetallicRoughnessLayers {
     struct TexturedFloat specular;       // reflectance of the dielectric at grazing incidence; scales that at normal incidence
     struct TexturedRgb specular_color;   // ... which is this, at most one
     struct TexturedRgb anisotropy;       // direction of its highlights in the tangent frame as (d + 1) / 2, and strength; not scaled
+    struct TexturedRgb coat_normal;      // in the tangent frame before normal maps as (n + 1) / 2; not scaled
 };
-WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 64);
+WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 80);
+
 // Principled materials: what Material has no room for.
 struct PrincipledParameters {
     struct TexturedFloat anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;

@@ -13,7 +13,7 @@ struct LobeParameters {
     std::string name;
     Material material;
     double width = 1.0;  // angular scale of the lobe in radians: narrow ones are binned about their axes
-    bool reciprocal = true;  // the thin principled material is not: a microfacet transmits behind itself alone
+    bool reciprocal = true;  // the thin principled material is not: a microfacet transmits behind itself alone; nor are mapped normals
 };
 
 // A white material: all of it that a lobe does not set is neutral.
@@ -167,6 +167,7 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"pane", layered(metallic_roughness(white, 0.0F, 0.4F), 2)},
           {"brushed", layered(metallic_roughness(coloured, 1.0F, 0.3F), 4)},
           {"brushed_pane", layered(metallic_roughness(coloured, 0.2F, 0.5F), 5)},
+          {"tilted_coat", layered(metallic_roughness(coloured, 0.0F, 0.5F), 6), 1.0, false},
           {"smoothest_coat", layered(metallic_roughness(white, 0.0F, 0.0F), 3), 1e-4}}},
         {"layered_metallic_roughness_base",
          {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},

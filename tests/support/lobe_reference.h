@@ -131,6 +131,7 @@ inline ReferenceValue reference_metallic_roughness_base(const ::Material& m, con
 struct LayeredTerms {
     GltfTerms surface, coat;
     double coat_fresnel, base_share;  // at the half vector
+    double coat_cosine;               // between wo and the normal of the coat
     double coat_chance, surface_chance, through_chance;
     MetallicRoughnessLayers layers;
     bool through = false;
@@ -149,7 +150,12 @@ inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3
     t.surface = gltf_terms(m, wi, wo, t.layers.anisotropy.value);
     ::Material coat = m;
     coat.alpha_u.value = t.layers.coat_roughness.value;
-    t.coat = gltf_terms(coat, wi, wo);
+    // About the coat's own normal.
+    const glm::dvec3 n = glm::normalize(2.0 * to_double(t.layers.coat_normal.value) - 1.0);
+    const glm::dvec3 s = glm::normalize(glm::cross(glm::abs(n.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0), n));
+    const auto on_coat = [&](const glm::dvec3& v) { return glm::dvec3(glm::dot(v, s), glm::dot(v, glm::cross(n, s)), glm::dot(v, n)); };
+    const glm::dvec3 coat_wi = on_coat(wi), coat_wo = on_coat(wo);
+    if (coat_wi.z > 0.0 && coat_wo.z > 0.0) t.coat = gltf_terms(coat, coat_wi, coat_wo), t.coat_cosine = coat_wo.z;
     const double specular = t.layers.specular.value;
     const glm::dvec3 f0 = glm::min(to_double(t.layers.specular_color.value), glm::dvec3(1.0)) * specular;
     const double metallic = m.metallic.value;
@@ -160,10 +166,10 @@ inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3
     const double weight = std::pow(1.0 - wi.z, 5.0);
     const glm::dvec3 base = to_double(m.diffuse.value);
     const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * weight, base + (1.0 - base) * weight, metallic);
-    const double c = coat_fresnel(weight);
-    const double s = (1.0 - c) * largest(reflectance);
-    const double r = static_cast<double>(t.layers.transmission.value) * base_share(weight) * largest(base);
-    if (c + s + r > 0.0) t.coat_chance = c / (c + s + r), t.surface_chance = s / (c + s + r), t.through_chance = r / (c + s + r);
+    const double c = coat_wi.z > 0.0 ? coat_fresnel(std::pow(1.0 - std::min(coat_wi.z, 1.0), 5.0)) : 0.0;
+    const double r = (1.0 - coat_fresnel(weight)) * largest(reflectance);
+    const double p = static_cast<double>(t.layers.transmission.value) * base_share(weight) * largest(base);
+    if (c + r + p > 0.0) t.coat_chance = c / (c + r + p), t.surface_chance = r / (c + r + p), t.through_chance = p / (c + r + p);
     return t;
 }
 
@@ -179,8 +185,8 @@ inline ReferenceValue reference_layered(const ::Material& m, const glm::dvec3& w
     const glm::dvec3 f0 = glm::min(to_double(t->layers.specular_color.value), glm::dvec3(1.0)) * specular;
     const double w = t->surface.fresnel;
     const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * w, base + (1.0 - base) * w, static_cast<double>(m.metallic.value));
-    const glm::dvec3 value = reflectance * ((1.0 - t->coat_fresnel) * t->surface.specular_brdf) + t->coat_fresnel * t->coat.specular_brdf;
-    return {value * cosine, t->surface_chance * t->surface.pdf + t->coat_chance * t->coat.pdf};
+    const glm::dvec3 value = reflectance * ((1.0 - t->coat_fresnel) * t->surface.specular_brdf * cosine) + t->coat_fresnel * t->coat.specular_brdf * t->coat_cosine;
+    return {value, t->surface_chance * t->surface.pdf + t->coat_chance * t->coat.pdf};
 }
 
 inline ReferenceValue reference_layered_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
