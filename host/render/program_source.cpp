@@ -39,6 +39,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
     out.define("HAS_COAT_NORMALS", f.coat_normals);
+    out.define("HAS_SHEEN", has_bit(f.lobes, LOBE_SHEEN_METALLIC_ROUGHNESS_BASE));
     out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps || f.coat_normals);
     out.define("HAS_VERTEX_TANGENTS", f.vertex_tangents);
     out.define("HAS_NORMAL_MAPS", f.normal_maps);

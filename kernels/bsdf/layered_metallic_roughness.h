@@ -31,6 +31,11 @@ INLINE LayerWeights layer_weights(Layered l, Vec3 wi) {
 #endif
     w.surface = coat_transmittance(l, cosine) * max_component(metallic_roughness_fresnel(l.material, cosine));
     w.through = l.transmission * base_share(l, cosine) * max_component(l.material.base);
+#if HAS_SHEEN
+    Float below = sheen_rest(l.sheen, sheen_albedo(l.sheen, cosine));
+    w.surface *= below;
+    w.through *= below;
+#endif
     return w;
 }
 
@@ -56,6 +61,10 @@ INLINE LobeValue layered_metallic_roughness_eval(LayeredMetallicRoughnessLobe lo
     coat.pdf = SELECT(coat.visible, coat.pdf, ZERO);
 #endif
 
+#if HAS_SHEEN
+    // The sheen lies between the coat and all else.
+    surface.value *= sheen_rest(l.sheen, GREATER(sheen_albedo(l.sheen, wi.z), sheen_albedo(l.sheen, wo.z)));
+#endif
     Rgb reflected = scale(metallic_roughness_fresnel(l.material, surface.cos_m), coat_transmittance(l, surface.cos_m) * surface.value);
     Float off_coat = coat_reflectance(l, surface.cos_m) * coat.value;
     Rgb passed = scale(l.material.base, l.transmission * base_share(l, surface.cos_m) * surface.value);

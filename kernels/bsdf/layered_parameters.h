@@ -10,6 +10,14 @@
 
 #include "bsdf/metallic_roughness.h"
 
+// Whether some of the scene's materials have sheen.
+#ifndef HAS_SHEEN
+#define HAS_SHEEN 1
+#endif
+#if HAS_SHEEN
+#include "bsdf/sheen.h"
+#endif
+
 // Whether some of the scene's materials have stretched highlights.
 #ifndef HAS_ANISOTROPY
 #define HAS_ANISOTROPY 1
@@ -23,6 +31,9 @@ typedef struct {
 #endif
 #if HAS_COAT_NORMALS
     Frame coat_frame; // in the frame of the lobe
+#endif
+#if HAS_SHEEN
+    Sheen sheen;
 #endif
     Float coat;         // share of the surface under the coat
     Float transmission; // share of the base that lets light through
@@ -80,7 +91,7 @@ INLINE Layered load_layered(MaterialInput in) {
     l.material = load_metallic_roughness(in);
     l.microfacets = rough_microfacets(load_scaled_float(in, alpha_u));
     l.two_sided = (load_flags(in) & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u;
-#if HAS_TEXTURES
+#if HAS_TEXTURES || HAS_SHEEN
     Int there = (as_UInt(load_constant(in, lobes)) & (UInt)(1u << LOBE_LAYERED_METALLIC_ROUGHNESS)) != (UInt)0u;
 #endif
     MaterialInput layers = extension_of(in);
@@ -89,6 +100,16 @@ INLINE Layered load_layered(MaterialInput in) {
 #endif
 #if HAS_COAT_NORMALS
     l.coat_frame = frame_of_coat(in.unmapped, load_record_rgb(layers, there, MetallicRoughnessLayers, coat_normal));
+#endif
+#if HAS_SHEEN
+    Rgb sheen = load_scaled_record_rgb(layers, there, MetallicRoughnessLayers, sheen_color);
+    l.sheen.color = vec3(unit_share(sheen.x), unit_share(sheen.y), unit_share(sheen.z));
+    // Where there are no layers, so that the table is looked up within the records: its first row.
+    Float roughness = load_scaled_record_float(layers, there, MetallicRoughnessLayers, sheen_roughness);
+    l.sheen.roughness = SELECT(there, LESSER(GREATER(roughness, (Float)SHEEN_LEAST_ROUGHNESS), ONE), (Float)SHEEN_LEAST_ROUGHNESS);
+    l.sheen.words = (global const float *)layers.materials;
+    UInt record = layers.material + as_UInt(material_word(layers, WORD_OFFSET(MetallicRoughnessLayers, sheen_albedo)));
+    l.sheen.table = SELECT(there, record * RECORD_WORDS(Material), (UInt)0u);
 #endif
     l.coat = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat));
     l.coat_microfacets = rough_microfacets(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat_roughness));

@@ -55,6 +55,22 @@ TEST(GltfMaterials, FactorsAndExtensions) {
     EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(4, 2, 0));
 }
 
+// Of its textures one is a colour, the other a roughness in alpha.
+TEST(GltfMaterials, Sheen) {
+    MaterialFile file(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.75},
+                                                                   {"sheenColorTexture", {{"index", 0}}}, {"sheenRoughnessTexture", {{"index", 0}}}}}}}});
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = file.add_floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    file.json["textures"] = Json::array({{{"source", 0}}});
+    file.json["images"] = Json::array({image_of(Rgb(0.5F))});
+    const auto model = model_of<MetallicRoughness>(file.read());
+    EXPECT_EQ(model.sheen_color.value, Rgb(0.5F, 0.25F, 1.0F));
+    EXPECT_EQ(model.sheen_roughness.value.x, 0.75F);
+    EXPECT_NEAR(std::get<Bitmap>(model.sheen_color.texture->source).rgb[0], 0.5F, 0.005F);  // decoded from sRGB
+    EXPECT_EQ(std::get<Bitmap>(model.sheen_roughness.texture->source).rgb[0], 1.0F);        // a picture without alpha
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenRoughnessFactor", 2}}}}}}).faults(), "sheenRoughnessFactor: is 2"));
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 3}}}}}}}).faults(), "sheenColorFactor/2: is 3"));
+}
+
 TEST(GltfMaterials, TexturesKeepTheirSpaceSamplerAndTransform) {
     const Json both = {{"index", 0},
                        {"texCoord", 1},

@@ -113,6 +113,11 @@ private:
 
     static std::string source(const LobeName& lobe) {
         std::string text = R"(
+            #define LOBE(name, NAME, class) LOBE_##NAME,
+            enum {
+            #include "bsdf/lobes.def"
+            };
+            #undef LOBE
             #include "bsdf/@.h"
             #define INPUT(index, i) {as_UInt(load((global const float *)(index) + (i))), ZERO, ZERO, materials, 0, 0, \
                                       {{ONE, ZERO, ZERO}, {ZERO, ONE, ZERO}, {ZERO, ZERO, ONE}}}

@@ -122,6 +122,10 @@ void Materials::read_layers(const Element& material, MetallicRoughness& model, A
     const Element coat = material.extension("KHR_materials_clearcoat");
     model.clearcoat = read_scalar(coat, "clearcoatFactor", 0.0, "clearcoatTexture", Transfer::linear, 0, out);
     model.clearcoat_roughness = read_scalar(coat, "clearcoatRoughnessFactor", 0.0, "clearcoatRoughnessTexture", Transfer::linear, 1, out);
+    const Element sheen = material.extension("KHR_materials_sheen");
+    model.sheen_color.value = rgb(sheen.vector<3>("sheenColorFactor", {0, 0, 0}, unit));
+    model.sheen_color.texture = take(sheen, "sheenColorTexture", Transfer::of_format, out);
+    model.sheen_roughness = read_scalar(sheen, "sheenRoughnessFactor", 0.0, "sheenRoughnessTexture", Transfer::alpha, 0, out);
     const Element transmission = material.extension("KHR_materials_transmission");
     model.transmission = read_scalar(transmission, "transmissionFactor", 0.0, "transmissionTexture", Transfer::linear, 0, out);
 }
@@ -195,8 +199,6 @@ MaterialModel Materials::read_model(const Element& material, Appearance& out) {
 }
 
 void Materials::name_what_is_left_out(const Element& material) {
-    if (material.extension("KHR_materials_sheen").present())
-        document_.warn(fmt::format("{}: {}: KHR_materials_sheen is passed over", document_.file, material.path()));
     const Element occlusion = material.object("occlusionTexture");
     if (occlusion.present()) {
         occlusion.index("index", document_.textures.size(), "textures");
