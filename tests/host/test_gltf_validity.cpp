@@ -45,7 +45,8 @@ TEST(GltfValidity, Extensions) {
     // What stands where it may, and what no one knows, is read.
     EXPECT_EQ(after([](GltfFile& f) {
         f.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {2, 2}}};
-        f.json["materials"][0]["extensions"]["VND_one"]["odd"] = 3;
+        f.json["materials"][0]["extensions"]["VND_one"]["oddTexture"] = {{"index", 0}, {"texCoord", 7}};
+        f.json["materials"][0]["extensions"]["VND_one"]["map"]["extensions"]["KHR_texture_transform"] = {{"scale", {2, 2}}};
         f.json["extras"] = {{"extensions", 3}};
     }), "");
 }

@@ -12,7 +12,8 @@ namespace wavelobe::gltf {
 
 namespace {
 
-// Where an extension may stand: owners, each item of a list as `#`; `...Texture` are the references to textures.
+// Where an extension may stand: owners, each item of a list as `#`; `...Texture` are the references to textures, which extensions of
+// materials may have by any name.
 const std::map<std::string, std::vector<std::string>, std::less<>>& places_of_extensions() {
     static const std::vector<std::string> material{"/materials/#"};
     static const std::map<std::string, std::vector<std::string>, std::less<>> known{
@@ -92,7 +93,7 @@ private:
         if (known == places_of_extensions().end()) return;
         const std::vector<std::string>& places = known->second;
         const auto fits = [&](const std::string& place) {
-            return place == "...Texture" ? owner_.starts_with("/materials/#/") && owner_.ends_with("Texture") : place == owner_;
+            return place == "...Texture" ? owner_.starts_with("/materials/#/") && (owner_.ends_with("Texture") || owner_.starts_with("/materials/#/extensions/")) : place == owner_;
         };
         if (std::any_of(places.begin(), places.end(), fits)) return;
         std::string expected;
@@ -138,10 +139,15 @@ void check_attributes(Document& document, const Accessors& accessors, const Elem
     }
 }
 
-// The sets of coordinates that a material's textures look up, of extensions too.
+// The sets of coordinates that a material's textures look up, of extensions too: those that are known.
 void add_sets(const Json& value, std::set<std::int64_t>& sets) {
     for (const auto& [key, member] : value.items()) {
         if (key == "extras" || !member.is_object()) continue;
+        if (key == "extensions") {
+            for (const auto& [name, extension] : member.items())
+                if (extension.is_object() && places_of_extensions().contains(name)) add_sets(extension, sets);
+            continue;
+        }
         if (key.ends_with("Texture") && member.contains("index")) {
             Faults unheard("");
             sets.insert(uv_set_of(Element(&member, "", &unheard)));
