@@ -108,7 +108,7 @@ struct MetallicRoughness {
     Parameter specular_color{Rgb{1.0F}, nullptr};  // ... at normal incidence
     Parameter clearcoat{Rgb{0.0F}, nullptr};       // share of the surface under a clear coat of index 1.5
     Parameter clearcoat_roughness{Rgb{0.0F}, nullptr};
-    std::optional<Parameter> clearcoat_normal;     // in the tangent frame before normal maps as (n + 1) / 2; none: that of what is below the coat
+    std::optional<Parameter> clearcoat_normal{};   // in the tangent frame before normal maps as (n + 1) / 2; none: that of what is below the coat
     Parameter sheen_color{Rgb{0.0F}, nullptr};     // KHR_materials_sheen: below the coat, above all else
     Parameter sheen_roughness{Rgb{0.0F}, nullptr}; // square root of its fibres' alpha
     // Direction in the tangent frame as (d + 1) / 2, and strength: there the microfacets' alpha nears one by its square.
