@@ -68,6 +68,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(instances, "instances");
     add(walks > 1, "walks_in_turn");
     add(anisotropy, "anisotropy");
+    add(coat_normals, "coat_normals");
     add(vertex_tangents, "vertex_tangents");
     add(normal_maps, "normal_maps");
     add(bump_maps, "bump_maps");

@@ -50,6 +50,7 @@ struct FeatureSet {
     bool instances = false;
     bool vertex_tangents = false;    // some vertices have tangents of their own
     bool anisotropy = false;
+    bool coat_normals = false;       // some coats have normals of their own
     bool normal_maps = false;   // or bump maps
     bool bump_maps = false;
     bool nested_sides = false;  // materials inside others differ between sides or are turned over
@@ -57,7 +58,7 @@ struct FeatureSet {
     int material_levels = 0;    // of materials that hold others, at the most
     bool transmission = false;
     bool unlike_sides = false; // some surface is black behind, or of another material
-    bool sides_by_winding = false;
+    bool culled_backs = false;
     bool lobe_choice = false;  // the class of lobes depends on more than the shape
     bool mixture = false;      // some material is both glossy and diffuse
     bool ggx = false;

@@ -99,7 +99,7 @@ private:
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
-        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.vertex_opacity || f.layers != 0);
+        f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.coat_normals || f.vertex_opacity || f.layers != 0);
         if (f.uvs) return;
         // Texture coordinates that nothing looks up.
         out_.uvs = {};
@@ -133,9 +133,9 @@ private:
         const std::uint32_t front = classes(s.front_material);
         const std::uint32_t back = classes(s.back_material);
         s.flags = front | back | media_.add_shape(shape, visible);
-        if (shape.material.sided_by_winding) s.flags |= SHAPE_SIDED_BY_WINDING;
+        if (shape.material.culled_behind) s.flags |= SHAPE_CULLED_BEHIND;
         FeatureSet& f = out_.features;
-        f.sides_by_winding = f.sides_by_winding || shape.material.sided_by_winding;
+        f.culled_backs = f.culled_backs || shape.material.culled_behind;
         f.unlike_sides = f.unlike_sides || s.back_material != s.front_material;
         // A black side ends a path in any queue; two sides of different classes must be told apart before.
         f.lobe_choice = f.lobe_choice || (front != 0 && back != 0 && front != back);

@@ -5,6 +5,7 @@
 #include "scene/fault.h"
 #include "tables/dielectric_surface.h"
 #include "tables/light_power.h"
+#include "tables/sheen_albedo.h"
 
 namespace wavelobe {
 namespace {
@@ -239,16 +240,24 @@ void MaterialFlattener::fill(DeviceMaterial& out, const MetallicRoughness& m) {
     const bool has_base = m.metallic.texture || m.metallic.value.x < 1.0F;
     const bool transmits = has_base && m.transmission.value.x > 0.0F;
     const bool anisotropic = m.anisotropy.texture || m.anisotropy.value.z > 0.0F;
-    if (transmits || anisotropic || m.clearcoat.value.x > 0.0F || m.specular.texture || m.specular_color.texture) {
+    const Rgb sheen = m.sheen_color.value;
+    const bool has_sheen = std::max({sheen.x, sheen.y, sheen.z}) > 0.0F;
+    if (transmits || anisotropic || has_sheen || m.clearcoat.value.x > 0.0F || m.specular.texture || m.specular_color.texture) {
         out.lobes = bit(LOBE_LAYERED_METALLIC_ROUGHNESS);
-        if (has_base) out.lobes |= bit(LOBE_LAYERED_METALLIC_ROUGHNESS_BASE);
+        if (has_sheen) out.lobes |= bit(LOBE_SHEEN_METALLIC_ROUGHNESS_BASE);
+        else if (has_base) out.lobes |= bit(LOBE_LAYERED_METALLIC_ROUGHNESS_BASE);
+        if (has_sheen && sheen_albedo_ == WAVELOBE_NONE) sheen_albedo_ = add_extension(sheen_albedo());
         out_.features.anisotropy = out_.features.anisotropy || anisotropic;
         if (transmits) out.flags |= MATERIAL_TRANSMISSIVE | MATERIAL_THIN;
         out.eta.x = 1.0F;
         Parameter f0 = m.specular_color;
         f0.value = reflectance;
         out.extension = add_extension(MetallicRoughnessLayers{scalar(m.clearcoat), scalar(m.clearcoat_roughness), scalar(m.transmission),
-                                                              scalar(m.specular), rgb(f0), rgb(m.anisotropy)});
+                                                              scalar(m.specular), rgb(f0), rgb(m.anisotropy),
+                                                              rgb(m.clearcoat_normal.value_or(Parameter{Rgb{0.5F, 0.5F, 1.0F}, nullptr})),
+                                                              rgb(m.sheen_color), scalar(m.sheen_roughness),
+                                                              sheen_albedo_ - static_cast<std::uint32_t>(out_.materials.size())});
+        out_.features.coat_normals = out_.features.coat_normals || (m.clearcoat_normal && m.clearcoat.value.x > 0.0F);
         return;
     }
     out.lobes = bit(LOBE_METALLIC_ROUGHNESS);

@@ -67,6 +67,7 @@ private:
     std::map<std::uint32_t, int> levels_;  // of materials that hold others
     std::map<std::pair<const Texture*, int>, std::uint32_t> textures_;
     std::map<const Texture*, std::uint32_t> texels_;
+    std::uint32_t sheen_albedo_ = WAVELOBE_NONE;  // record of the table, once a material needs it
 };
 
 }  // namespace wavelobe

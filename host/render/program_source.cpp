@@ -38,7 +38,9 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ANALYTIC", f.analytic);
     out.define("HAS_INSTANCES", f.instances);
     out.define("HAS_ANISOTROPY", f.anisotropy);
-    out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps);
+    out.define("HAS_COAT_NORMALS", f.coat_normals);
+    out.define("HAS_SHEEN", has_bit(f.lobes, LOBE_SHEEN_METALLIC_ROUGHNESS_BASE));
+    out.define("HAS_TANGENTS", f.anisotropy || f.normal_maps || f.coat_normals);
     out.define("HAS_VERTEX_TANGENTS", f.vertex_tangents);
     out.define("HAS_NORMAL_MAPS", f.normal_maps);
     out.define("HAS_BUMP_MAPS", f.bump_maps);
@@ -49,7 +51,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TRANSMISSION", f.transmission);
     out.define("HAS_LAYERED_LOBES", has_bit(f.lobes, LOBE_LAYERED_METALLIC_ROUGHNESS));
     out.define("HAS_UNLIKE_SIDES", f.unlike_sides);
-    out.define("HAS_SIDES_BY_WINDING", f.sides_by_winding);
+    out.define("HAS_CULLED_BACKS", f.culled_backs);
     out.define("HAS_LOBE_CHOICE", f.lobe_choice);
     out.define("HAS_MIXTURE", f.mixture);
     out.define("HAS_GGX", f.ggx);

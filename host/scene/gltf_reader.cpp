@@ -15,6 +15,7 @@
 #include "scene/gltf/lights.h"
 #include "scene/gltf/materials.h"
 #include "scene/gltf/pose.h"
+#include "scene/gltf/validity.h"
 #include "scene/gltf/volumes.h"
 
 namespace wavelobe {
@@ -37,12 +38,17 @@ public:
     Scene run() {
         animate(document_, accessors_, options_.frame_time, tree_);
         tree_.place();
+        check_extension_objects(document_);
+        check_primitives(document_, accessors_);
+        check_skins(document_, accessors_, tree_);
         meshes_.check();
         materials_.check();
         add_shapes();
         add_punctual_lights(document_, tree_, scene_);
         place_camera(document_, tree_, {options_.width, options_.height}, scene_);
         if (!document_.faults.empty()) document_.faults.raise();
+        if (const std::size_t count = leave_out_backs(scene_, single_sided_); count > 0)
+            document_.warn(fmt::format("{}: {} triangles of single-sided materials show the camera their backs alone and are left out", document_.file, count));
         clear_backs(scene_, single_sided_);
         part_media(scene_, volumes_);
         add_light();

@@ -108,6 +108,9 @@ struct MetallicRoughness {
     Parameter specular_color{Rgb{1.0F}, nullptr};  // ... at normal incidence
     Parameter clearcoat{Rgb{0.0F}, nullptr};       // share of the surface under a clear coat of index 1.5
     Parameter clearcoat_roughness{Rgb{0.0F}, nullptr};
+    std::optional<Parameter> clearcoat_normal{};   // in the tangent frame before normal maps as (n + 1) / 2; none: that of what is below the coat
+    Parameter sheen_color{Rgb{0.0F}, nullptr};     // KHR_materials_sheen: below the coat, above all else
+    Parameter sheen_roughness{Rgb{0.0F}, nullptr}; // square root of its fibres' alpha
     // Direction in the tangent frame as (d + 1) / 2, and strength: there the microfacets' alpha nears one by its square.
     Parameter anisotropy{Rgb{1.0F, 0.5F, 0.0F}, nullptr};
     Parameter transmission{Rgb{0.0F}, nullptr};    // share of the base that lets light through, tinted by its colour
@@ -174,7 +177,9 @@ struct SurfaceMaterial {
     int front = 0;  // index into Scene::materials
     int back = -1;  // -1: black
     Opacity opacity{};
-    bool sided_by_winding = false;  // which side is seen follows from the winding of triangles, otherwise from shading normals
+    // The back, told by the winding of triangles and not by shading normals, is what the camera sees, and paths that only delta lobes
+    // have turned since; to all others both sides are the front.
+    bool culled_behind = false;
 };
 
 // ---- shapes --------------------------------------------------------------------------------------

@@ -3,12 +3,20 @@
 // (KHR_materials_anisotropy), and textures of its dielectric's reflectance (KHR_materials_specular). Khronos Group 2020-2023. Both
 // lobes of such a material read them.
 //
-// Deviations, which make the material reciprocal: the coat's Fresnel term is taken at the half vector, as that of the
+// Deviations, which make the material reciprocal where the coat has no normal of its own: the coat's Fresnel term is taken at the half vector, as that of the
 // dielectric below it is, not at the normal.
 #ifndef WAVELOBE_BSDF_LAYERED_PARAMETERS_H
 #define WAVELOBE_BSDF_LAYERED_PARAMETERS_H
 
 #include "bsdf/metallic_roughness.h"
+
+// Whether some of the scene's materials have sheen.
+#ifndef HAS_SHEEN
+#define HAS_SHEEN 1
+#endif
+#if HAS_SHEEN
+#include "bsdf/sheen.h"
+#endif
 
 // Whether some of the scene's materials have stretched highlights.
 #ifndef HAS_ANISOTROPY
@@ -20,6 +28,12 @@ typedef struct {
     Microfacets microfacets, coat_microfacets;
 #if HAS_ANISOTROPY
     Float along_x, along_y; // unit: where the axis u of the microfacets points
+#endif
+#if HAS_COAT_NORMALS
+    Frame coat_frame; // in the frame of the lobe
+#endif
+#if HAS_SHEEN
+    Sheen sheen;
 #endif
     Float coat;         // share of the surface under the coat
     Float transmission; // share of the base that lets light through
@@ -55,17 +69,47 @@ INLINE Vec3 from_microfacets(Layered l, Vec3 v) { return vec3(madd(l.along_x, v.
 #define from_microfacets(l, v) (v)
 #endif
 
+#if HAS_COAT_NORMALS
+// About a normal in the tangent frame before normal maps, stored as (n + 1) / 2; one without a direction is that frame's.
+INLINE Frame frame_of_coat(Frame unmapped, Rgb normal) {
+    Vec3 n = vec3(madd(normal.x, (Float)2.0f, (Float)-1.0f), madd(normal.y, (Float)2.0f, (Float)-1.0f), madd(normal.z, (Float)2.0f, (Float)-1.0f));
+    Float square = length_squared(n);
+    Int pointed = (square > 0.0f) & (square < INFINITY);
+    n = to_world(unmapped, select3(pointed, n, vec3(ZERO, ZERO, ONE)));
+    return frame_of_normal(normalize3(n));
+}
+
+INLINE Vec3 to_coat(Layered l, Vec3 v) { return to_local(l.coat_frame, v); }
+INLINE Vec3 from_coat(Layered l, Vec3 v) { return to_world(l.coat_frame, v); }
+#else
+#define to_coat(l, v) (v)
+#define from_coat(l, v) (v)
+#endif
+
 INLINE Layered load_layered(MaterialInput in) {
     Layered l;
     l.material = load_metallic_roughness(in);
     l.microfacets = rough_microfacets(load_scaled_float(in, alpha_u));
     l.two_sided = (load_flags(in) & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u;
-#if HAS_TEXTURES
+#if HAS_TEXTURES || HAS_SHEEN
     Int there = (as_UInt(load_constant(in, lobes)) & (UInt)(1u << LOBE_LAYERED_METALLIC_ROUGHNESS)) != (UInt)0u;
 #endif
     MaterialInput layers = extension_of(in);
 #if HAS_ANISOTROPY
     stretch_microfacets(&l, load_record_rgb(layers, there, MetallicRoughnessLayers, anisotropy));
+#endif
+#if HAS_COAT_NORMALS
+    l.coat_frame = frame_of_coat(in.unmapped, load_record_rgb(layers, there, MetallicRoughnessLayers, coat_normal));
+#endif
+#if HAS_SHEEN
+    Rgb sheen = load_scaled_record_rgb(layers, there, MetallicRoughnessLayers, sheen_color);
+    l.sheen.color = vec3(unit_share(sheen.x), unit_share(sheen.y), unit_share(sheen.z));
+    // Where there are no layers, so that the table is looked up within the records: its first row.
+    Float roughness = load_scaled_record_float(layers, there, MetallicRoughnessLayers, sheen_roughness);
+    l.sheen.roughness = SELECT(there, LESSER(GREATER(roughness, (Float)SHEEN_LEAST_ROUGHNESS), ONE), (Float)SHEEN_LEAST_ROUGHNESS);
+    l.sheen.words = (global const float *)layers.materials;
+    UInt record = layers.material + as_UInt(material_word(layers, WORD_OFFSET(MetallicRoughnessLayers, sheen_albedo)));
+    l.sheen.table = SELECT(there, record * RECORD_WORDS(Material), (UInt)0u);
 #endif
     l.coat = unit_share(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat));
     l.coat_microfacets = rough_microfacets(load_scaled_record_float(layers, there, MetallicRoughnessLayers, coat_roughness));

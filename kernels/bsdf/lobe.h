@@ -20,6 +20,11 @@
 #ifndef WAVELOBE_BSDF_LOBE_H
 #define WAVELOBE_BSDF_LOBE_H
 
+// Whether some coats have normals of their own.
+#ifndef HAS_COAT_NORMALS
+#define HAS_COAT_NORMALS 0
+#endif
+
 #include "core/math.h"
 #include "core/vector.h"
 #include "shared/materials.h"
@@ -37,6 +42,9 @@ typedef struct {
     global const struct Material *materials;
     global const struct Texture *textures;
     global const float *texels;
+#if HAS_COAT_NORMALS
+    Frame unmapped; // the surface's frame before normal maps, on the side that is seen, in the frame of the lobes
+#endif
 } MaterialInput;
 
 typedef struct {

@@ -35,6 +35,14 @@ INLINE MaterialInput material_input(const Surface *surface, global const struct 
     in.materials = materials;
     in.textures = textures;
     in.texels = texels;
+#if HAS_COAT_NORMALS
+    // Where the frame has been turned to the back, all of the map's normal is.
+    Frame f = surface->unmapped;
+    Float side = SELECT(dot3(f.n, surface->frame.n) < 0.0f, (Float)-1.0f, ONE);
+    in.unmapped.s = scale(to_local(surface->frame, f.s), side);
+    in.unmapped.t = scale(to_local(surface->frame, f.t), side);
+    in.unmapped.n = scale(to_local(surface->frame, f.n), side);
+#endif
     return in;
 }
 

@@ -103,6 +103,9 @@ typedef struct {
     Vec3 normal;   // geometric, unit
     Frame frame;   // shading; on an opaque surface turned to the side the path came from
     Vec3 wi;       // where the path came from, in the frame
+#if HAS_COAT_NORMALS
+    Frame unmapped; // the frame before it was turned and tilted
+#endif
     Float u, v;    // texture coordinates
 #if HAS_SECOND_UVS
     Float second_u, second_v;
@@ -266,30 +269,14 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
 #endif
 
 #if HAS_INSTANCES
-// From the space of a group to the world.
-INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
-    InstanceMap m = instance_map(s.instances, instance);
-    if (!any_lane(m.placed)) return;
-    Vec3 error = out->error;
-    Vec3 position = instance_point(&m, out->position, &error);
-    Vec3 normal = normalize_any_scale(instance_normal(&m, out->normal));
-    Vec3 n = normalize_any_scale(instance_normal(&m, out->frame.n));
-    out->position = select3(m.placed, position, out->position);
-    out->error = select3(m.placed, error, out->error);
-    out->normal = select3(m.placed, normal, out->normal);
-    out->frame.n = select3(m.placed, n, out->frame.n);
-#if HAS_TANGENTS
-    out->dp_du = select3(m.placed, instance_vector(&m, out->dp_du), out->dp_du);
-    out->dp_dv = select3(m.placed, instance_vector(&m, out->dp_dv), out->dp_dv);
-#if HAS_VERTEX_TANGENTS
-    out->tangent = select3(m.placed, instance_vector(&m, out->tangent), out->tangent);
-#endif
-#endif
-}
+#include "shapes/placed_surface.h"
 #endif
 
 // The material of the side that is seen, and the frame turned to that side unless the material keeps it.
 INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
+#if HAS_COAT_NORMALS
+    out->unmapped = out->frame;
+#endif
     Vec3 back_along = negate(p->direction);
     out->wi = to_local(out->frame, back_along);
     Int behind = out->wi.z < 0.0f;
@@ -297,9 +284,10 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
 #if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);
     Int from_back = behind;
-#if HAS_SIDES_BY_WINDING
-    Int by_winding = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_SIDED_BY_WINDING) != (UInt)0u;
-    from_back = SELECT(by_winding, dot3(out->normal, p->direction) > 0.0f, behind);
+#if HAS_CULLED_BACKS
+    // Culling is the eye's: what lights the scene finds the surface on both sides, as light samples do.
+    Int culled = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_CULLED_BEHIND) != (UInt)0u;
+    from_back = SELECT(culled, (p->pdf < 0.0f) & (dot3(out->normal, p->direction) > 0.0f), behind);
 #endif
     out->material = SELECT(from_back, back, front);
 #else

@@ -94,8 +94,22 @@ struct MetallicRoughnessLayers {
     struct TexturedFloat specular;       // reflectance of the dielectric at grazing incidence; scales that at normal incidence
     struct TexturedRgb specular_color;   // ... which is this, at most one
     struct TexturedRgb anisotropy;       // direction of its highlights in the tangent frame as (d + 1) / 2, and strength; not scaled
+    struct TexturedRgb coat_normal;      // in the tangent frame before normal maps as (n + 1) / 2; not scaled
+    struct TexturedRgb sheen_color;
+    struct TexturedFloat sheen_roughness; // square root of its fibres' alpha
+    Uint32 sheen_albedo;                  // how many records on SheenAlbedo lies, modulo 2^32; in scenes with sheen
 };
-WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 64);
+WAVELOBE_CHECK_SIZE(MetallicRoughnessLayers, 108);
+
+// The directional albedo of white sheen: rows of roughness from the least to 1, columns of the cosine's square root from 0 to 1.
+#define SHEEN_ROUGHNESSES 16u
+#define SHEEN_COSINES 32u
+#define SHEEN_LEAST_ROUGHNESS 0.07f // smoother fibres are seen but for 5 degrees above the horizon
+struct SheenAlbedo {
+    float at[SHEEN_ROUGHNESSES * SHEEN_COSINES];
+};
+WAVELOBE_CHECK_SIZE(SheenAlbedo, 2048);
+
 // Principled materials: what Material has no room for.
 struct PrincipledParameters {
     struct TexturedFloat anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;

@@ -30,7 +30,7 @@ WAVELOBE_CHECK_SIZE(Shape, 40);
 #define SHAPE_VEILED 32u // emits on each hit whatever its opacity, which only says how many paths go on behind it
 #define SHAPE_UNSAMPLED 64u      // emits, and is no light: one record of radiance for all of it
 #define SHAPE_EMITS_BEHIND 128u  // on both sides; the back is never sampled
-#define SHAPE_SIDED_BY_WINDING 512u // sides of unlike materials are told by the geometric normal
+#define SHAPE_CULLED_BEHIND 512u // its back, told by the geometric normal, is seen by the camera and beyond delta lobes alone; other paths see the front
 #define SHAPE_EMITS_COLORED 256u // scaled by the colours of its vertices
 #define SHAPE_PARTS_MEDIA 1024u     // says which media are on its two sides
 #define SHAPE_HAS_TANGENTS 4096u    // of its vertices

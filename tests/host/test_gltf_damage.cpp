@@ -25,7 +25,7 @@ void add_geometry(GltfFile& file) {
     file.json["accessors"].back()["normalized"] = true;
     attributes["JOINTS_0"] = file.add(std::vector<std::uint8_t>(12, 0), "VEC4", 5121, 4);
     attributes["WEIGHTS_0"] = file.add_floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4", 4);
-    const int delta = file.add_floats({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
+    const int delta = file.add_bounded({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
     primitive["targets"] = Json::array({{{"POSITION", delta}}});
     file.json["meshes"][0]["weights"] = {0.5};
     const int index_view = file.add_view(bytes_of(std::vector<std::uint16_t>{1}));
@@ -48,7 +48,7 @@ void add_material(GltfFile& file) {
 
 void add_scene(GltfFile& file) {
     const int matrix = file.add_floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "MAT4", 16);
-    const int times = file.add_floats({0, 1}, "SCALAR", 1);
+    const int times = file.add_bounded({0, 1}, "SCALAR", 1);
     const int values = file.add_floats({0, 0, 0, 1, 0, 0}, "VEC3", 3);
     file.json["skins"] = Json::array({{{"joints", {1}}, {"inverseBindMatrices", matrix}, {"skeleton", 1}}});
     file.json["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0, "children": [1, 2]},
@@ -141,7 +141,7 @@ TEST_F(Damage, NumbersInBuffers) {
         const std::size_t view = file.json["accessors"][static_cast<std::size_t>(accessor)]["bufferView"];
         std::string buffer = file.buffer;
         buffer.replace(static_cast<std::size_t>(file.json["bufferViews"][view]["byteOffset"]) + byte, bytes.size(), bytes);
-        return after("/buffers/0/uri", "data:;base64," + base64(buffer));
+        return after("/buffers/0/uri", "data:application/octet-stream;base64," + base64(buffer));
     };
     const auto number = [](float value) { return bytes_of(std::vector<float>{value}); };
     const Json& attributes = file.json["meshes"][0]["primitives"][0]["attributes"];
@@ -153,7 +153,7 @@ TEST_F(Damage, NumbersInBuffers) {
     EXPECT_NE(with(file.json["meshes"][0]["primitives"][0]["indices"], 2, "\x09").find("the primitive has 3 vertices"), std::string::npos);
     EXPECT_NE(with(attributes["JOINTS_0"], 0, "\x05").find("follows joint 5; the skin has 1"), std::string::npos);
     EXPECT_NE(with(file.json["skins"][0]["inverseBindMatrices"], 12, number(3)).find("expected 0 0 0 1"), std::string::npos);
-    EXPECT_NE(with(file.json["animations"][0]["samplers"][0]["input"], 4, number(-1)).find("times that do not ascend"), std::string::npos);
+    EXPECT_NE(with(file.json["animations"][0]["samplers"][0]["input"], 4, number(0)).find("times that do not ascend"), std::string::npos);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(GltfFaults, Ranges) {
     EXPECT_FAULT(after([](GltfFile& f) { f.json["bufferViews"][0]["byteStride"] = 4; }), "whose stride is 4");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0]["componentType"] = 5124; }), "/accessors/0: component type 5124");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC9"; }), "/accessors/0: type `VEC9`");
-    EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0]["type"] = "VEC2"; }), "POSITION is accessor 0 of type VEC2; expected VEC3");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["accessors"][0].update({{"type", "VEC2"}, {"min", {0, 0}}, {"max", {1, 1}}}); }), "POSITION is accessor 0 of type VEC2; expected VEC3");
 }
 
 TEST(GltfFaults, ListsWithoutItems) {
@@ -146,9 +146,9 @@ TEST(GltfFaults, LongChainsOfNodesAreRead) {
 TEST(GltfFaults, Buffers) {
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "absent.bin"}}}); }), "absent.bin");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}}}); }), "/bufferViews/0: asks for buffer 0, which has no `uri`");
-    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:;base64,AAA*"}}}); }),
-                 "/buffers/0/uri: character 16 of the data URI is not base64");
-    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:;base64,AAAA"}}}); }),
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:application/gltf-buffer;base64,AAA*"}}}); }),
+                 "/buffers/0/uri: character 39 of the data URI is not base64");
+    EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "data:application/octet-stream;base64,AAAA"}}}); }),
                  "/buffers/0: claims 48 bytes and has 3");
     EXPECT_FAULT(after([](GltfFile& f) { f.json["buffers"] = Json::array({{{"byteLength", 48}, {"uri", "https://example.com/a.bin"}}}); }),
                  "nothing is fetched");

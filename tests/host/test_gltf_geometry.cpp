@@ -98,7 +98,7 @@ TEST(GltfGeometry, InterleavedStridedAndNormalized) {
     const int view = file.add_view(bytes);
     file.json["bufferViews"][static_cast<std::size_t>(view)]["byteStride"] = 16;
     file.json["accessors"] = Json::array(
-        {{{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+        {{{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {1, 1, 0}}},
          {{"bufferView", view}, {"byteOffset", 12}, {"componentType", 5121}, {"normalized", true}, {"count", 3}, {"type", "VEC2"}}});
     file.json["meshes"] = Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}}})}}});
     const Scene scene = file.read();
@@ -112,6 +112,7 @@ TEST(GltfGeometry, QuantizedPositionsAndShortIndices) {
     const int positions = file.add(std::vector<std::int16_t>{0, 0, 0, 0, 32767, 0, 0, 0, -32768, 16384, 0, 0}, "VEC3", 5122, 4);
     Json& accessor = file.json["accessors"][static_cast<std::size_t>(positions)];
     accessor["normalized"] = true;
+    accessor["min"] = {-32768, 0, 0}, accessor["max"] = {32767, 16384, 0};
     file.json["bufferViews"][0]["byteStride"] = 8;
     const int order = file.add(std::vector<std::uint8_t>{2, 0, 1}, "SCALAR", 5121, 1);
     file.json["extensionsUsed"] = file.json["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -130,6 +131,7 @@ TEST(GltfGeometry, SparseAccessorsReplaceElements) {
         const int indices = file.add_view(bytes_of(std::vector<std::uint16_t>{0, 2}));
         const int values = file.add_view(bytes_of(std::vector<float>{5, 0, 0, 0, 7, 0}));
         Json& accessor = file.json["accessors"][0];
+        accessor["max"] = {5, 7, 0};
         if (from_zeros) accessor.erase("bufferView");
         accessor["sparse"] = {{"count", 2},
                               {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
@@ -191,7 +193,7 @@ TEST(GltfGeometry, AnimationsMoveNodes) {
                           Case{"CUBICSPLINE", {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 0, 0}, 0.625F}}) {
         GltfFile file;
         file.add_mesh(unit_triangle());
-        const int times = file.add_floats({1, 3}, "SCALAR", 1);
+        const int times = file.add_bounded({1, 3}, "SCALAR", 1);
         const int values = file.add_floats(c.values, "VEC3", 3);
         file.json["animations"] = Json::array(
             {{{"samplers", Json::array({{{"input", times}, {"output", values}, {"interpolation", c.interpolation}}})},
@@ -205,7 +207,7 @@ TEST(GltfGeometry, AnimationsMoveNodes) {
 TEST(GltfGeometry, MorphTargetsAddUp) {
     GltfFile file;
     Json& primitive = file.add_mesh(unit_triangle());
-    const int delta = file.add_floats({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
+    const int delta = file.add_bounded({0, 0, 1, 0, 0, 2, 0, 0, 3}, "VEC3", 3);
     primitive["targets"] = Json::array({{{"POSITION", delta}}});
     file.json["meshes"][0]["weights"] = {0.5};
     EXPECT_EQ(mesh_of(file.read()).positions[2], glm::vec3(0, 1, 1.5F));
@@ -230,7 +232,7 @@ TEST(GltfGeometry, SkinsFollowTheirJoints) {
     expect_near(mesh.positions[1], {3, 2.5F, 0});
     expect_near(mesh.positions[2], {2, 6, 0});
     file.json["skins"][0]["joints"] = {1};
-    EXPECT_TRUE(has_text(file.faults(), "/meshes/0/primitives/0: vertex 1 follows joint 1; the skin has 1"));
+    EXPECT_TRUE(has_text(file.faults(), "/meshes/0/primitives/0/attributes: JOINTS_0: vertex 1 follows joint 1; the skin has 1"));
 }
 
 TEST(GltfGeometry, GpuInstancesAreCopies) {

@@ -1,4 +1,6 @@
 // glTF: materials, textures, lights.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "film/png.h"
@@ -31,7 +33,7 @@ TEST(GltfMaterials, DefaultsAreTheSpecifications) {
     EXPECT_EQ(model.base_color.value, Rgb(1.0F));
     EXPECT_EQ(model.metallic.value.x, 1.0F);
     EXPECT_EQ(model.roughness.value.x, 1.0F);
-    EXPECT_TRUE(scene.shapes[0].material.sided_by_winding);
+    EXPECT_TRUE(scene.shapes[0].material.culled_behind);
     EXPECT_EQ(std::get<ThinDielectric>(scene.materials.at(static_cast<std::size_t>(scene.shapes[0].material.back)).model).eta, 1.0F);
 }
 
@@ -51,6 +53,22 @@ TEST(GltfMaterials, FactorsAndExtensions) {
     EXPECT_EQ(model.specular_color.value, Rgb(1, 2, 3));
     ASSERT_TRUE(scene.shapes[0].emitter);
     EXPECT_EQ(scene.shapes[0].emitter->radiance.value, Rgb(4, 2, 0));
+}
+
+// Of its textures one is a colour, the other a roughness in alpha.
+TEST(GltfMaterials, Sheen) {
+    MaterialFile file(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.25, 1}}, {"sheenRoughnessFactor", 0.75},
+                                                                   {"sheenColorTexture", {{"index", 0}}}, {"sheenRoughnessTexture", {{"index", 0}}}}}}}});
+    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = file.add_floats({0, 0, 1, 0, 0, 1}, "VEC2", 2);
+    file.json["textures"] = Json::array({{{"source", 0}}});
+    file.json["images"] = Json::array({image_of(Rgb(0.5F))});
+    const auto model = model_of<MetallicRoughness>(file.read());
+    EXPECT_EQ(model.sheen_color.value, Rgb(0.5F, 0.25F, 1.0F));
+    EXPECT_EQ(model.sheen_roughness.value.x, 0.75F);
+    EXPECT_NEAR(std::get<Bitmap>(model.sheen_color.texture->source).rgb[0], 0.5F, 0.005F);  // decoded from sRGB
+    EXPECT_EQ(std::get<Bitmap>(model.sheen_roughness.texture->source).rgb[0], 1.0F);        // a picture without alpha
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenRoughnessFactor", 2}}}}}}).faults(), "sheenRoughnessFactor: is 2"));
+    EXPECT_TRUE(has_text(MaterialFile(Json{{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 3}}}}}}}).faults(), "sheenColorFactor/2: is 3"));
 }
 
 TEST(GltfMaterials, TexturesKeepTheirSpaceSamplerAndTransform) {
@@ -135,7 +153,7 @@ TEST(GltfMaterials, BacksOfSingleSidedSurfaces) {
         Json& primitive = file.add_mesh(positions);
         primitive["material"] = 0;
         primitive["indices"] = file.add(indices, "SCALAR", 5123, 1);
-        return file.read().shapes[0].material.sided_by_winding;
+        return file.read().shapes[0].material.culled_behind;
     };
     const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     const std::vector<std::uint16_t> outwards{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
@@ -144,6 +162,32 @@ TEST(GltfMaterials, BacksOfSingleSidedSurfaces) {
     EXPECT_FALSE(clear(true, unit_triangle(), {0, 1, 2}));
     EXPECT_FALSE(clear(false, corners, outwards));
     EXPECT_TRUE(clear(false, corners, inwards));
+}
+
+// Triangles that turn their backs to the camera: on their own they are not there, unless they shine or have two sides; where they hang
+// together with others they stay.
+TEST(GltfMaterials, WhatShowsBacksAloneIsLeftOut) {
+    const auto triangles = [](const Json& material, bool joined, bool orthographic = false) {
+        MaterialFile file(material);
+        file.json["meshes"] = Json::array();
+        const float x = joined ? 0.0F : 2.0F;
+        file.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0, x, 0, 0, x, 1, 0, x + 1, 0, -0.5F})["material"] = 0;
+        if (orthographic) {
+            file.json["cameras"] = Json::array({{{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 3}, {"znear", 0}, {"zfar", 10}}}}});
+            file.json["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 5}}});
+            file.json["scenes"][0]["nodes"] = {0, 1};
+        }
+        const Scene scene = file.read();
+        const auto is_said = [](const std::string& w) { return w.find("triangles of single-sided materials show the camera their backs alone") != std::string::npos; };
+        const bool said = std::any_of(scene.warnings.begin(), scene.warnings.end(), is_said);
+        EXPECT_EQ(said, mesh_of(scene).triangles.size() < 2);
+        return mesh_of(scene).triangles.size();
+    };
+    EXPECT_EQ(triangles(Json::object(), false), 1U);
+    EXPECT_EQ(triangles(Json::object(), false, true), 1U);
+    EXPECT_EQ(triangles(Json::object(), true), 2U);
+    EXPECT_EQ(triangles({{"doubleSided", true}}, false), 2U);
+    EXPECT_EQ(triangles({{"emissiveFactor", {1, 1, 1}}}, false), 2U);
 }
 
 // Of two triangles the second has mirrored coordinates: its green is turned over.

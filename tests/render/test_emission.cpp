@@ -89,12 +89,44 @@ TEST(Emission, BothCoordinatesInOneMaterial) {
     expect_mean(render(sheet.scene, 64).image, glm::dvec3(0.5));
 }
 
+// Culling is for the camera: to all else a single-sided surface has two sides, and whichever of them faces the light, what is below it is lit
+// as below a two-sided one, by samples and by paths. What the camera sees through the back is the same.
+TEST(Emission, CulledBacksHideNothingFromLight) {
+    const auto lit = [](bool culled, bool turned, bool from_below, bool by_sky) {
+        Scene scene = empty_scene(32);
+        add_floor(scene, 1.0F, add_diffuse(scene, Rgb{0.5F}));
+        Shape& sheet = add_floor(scene, 1.5F, add_diffuse(scene, Rgb{0.7F}));
+        auto& mesh = std::get<TriangleMesh>(sheet.geometry);
+        for (glm::vec3& p : mesh.positions) p.y = 1.0F;
+        mesh.parallelogram = false;
+        if (turned)
+            for (glm::uvec3& t : mesh.triangles) std::swap(t.x, t.y);
+        sheet.material.back = culled ? add_material(scene, ThinDielectric{1.0F}) : sheet.material.front;
+        sheet.material.culled_behind = culled;
+        if (by_sky) scene.emitters.emplace_back(ConstantEmitter{Rgb{1.0F}});
+        else scene.emitters.emplace_back(PointEmitter{{1.8F, 1.5F, 0}, Rgb{1.0F}});
+        look_at(scene, {0, from_below ? 0.9F : 2.0F, 0}, {0, 0, 0}, {0, 0, 1}, from_below ? 60.0F : 27.5F);
+        return picture_mean(render(scene, 256).image);
+    };
+    for (const bool by_sky : {false, true}) {
+        for (const bool turned : {false, true}) {
+            const PictureMean whole = lit(false, turned, true, by_sky);
+            const PictureMean culled = lit(true, turned, true, by_sky);
+            EXPECT_NEAR(whole.mean.x, culled.mean.x, 4.5 * std::hypot(whole.standard_error.x, culled.standard_error.x)) << by_sky << turned;
+        }
+        // From above, through the back, the floor is as dark.
+        const PictureMean through = lit(true, true, false, by_sky);
+        const PictureMean above = lit(true, false, false, by_sky);
+        EXPECT_LT(through.mean.x, 0.8 * above.mean.x) << by_sky;
+    }
+}
+
 // The back of a single-sided surface is not there, whatever its shading normals say; its front is.
 TEST(Emission, ClearBacksShowWhatIsBehind) {
     for (const bool turned : {false, true}) {
         SheetScene sheet({constant(Rgb{2, 3, 4})});
         sheet.scene.shapes[0].material.back = add_material(sheet.scene, ThinDielectric{1.0F});
-        sheet.scene.shapes[0].material.sided_by_winding = true;
+        sheet.scene.shapes[0].material.culled_behind = true;
         sheet.mesh().normals.assign(4, glm::normalize(glm::vec3{0, 0.1F, 1}));
         if (turned)
             for (glm::uvec3& t : sheet.mesh().triangles) std::swap(t.x, t.y);

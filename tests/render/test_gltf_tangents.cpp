@@ -81,6 +81,41 @@ TEST(GltfTangents, MirroredNode) {
     EXPECT_LT(difference(picture(file), picture(SquareFile(brushed(0.8, -0.4)))), 1e-4);
 }
 
+// A coat alone looks like a dielectric alone that has its normal map, and keeps to the surface's normal without one of its own, whatever map
+// is below it.
+TEST(GltfTangents, CoatsHaveNormalsOfTheirOwn) {
+    const Rgb tilted{0.7F, 0.6F, 0.9F};
+    const auto bare = [] {
+        return Json{{"doubleSided", true}, {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.4}}}};
+    };
+    const auto coated = [&] {
+        Json material = bare();
+        material["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.4}};
+        material["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
+        return material;
+    };
+    const auto shown = [&](Json material, const char* map, double scale, const glm::vec4& tangent = {1, 0, 0, 1}, bool from_behind = false) {
+        const Json info = {{"index", 0}, {"scale", scale}};
+        if (std::string(map) == "normalTexture") material[map] = info;
+        if (std::string(map) == "clearcoatNormalTexture") material["extensions"]["KHR_materials_clearcoat"][map] = info;
+        SquareFile file(material, tangent);
+        file.add_texture(tilted);
+        Scene scene = file.lit();
+        if (from_behind) {
+            look_at(scene, {0.5F, -2, -2}, {0, 0, 0}, {0, 0, 1}, 20.0F);
+            scene.emitters = {PointEmitter{{-0.7F, 1, -2}, Rgb(5.0F)}};
+        }
+        return render(scene, 16).image.rgb;
+    };
+    const auto plain = shown(bare(), "", 1);
+    EXPECT_LT(difference(plain, shown(coated(), "", 1)), 1e-3);
+    EXPECT_LT(difference(plain, shown(coated(), "normalTexture", 1)), 1e-3);
+    EXPECT_GT(difference(plain, shown(bare(), "normalTexture", 1)), 0.1);
+    EXPECT_LT(difference(shown(bare(), "normalTexture", 1), shown(coated(), "clearcoatNormalTexture", 1)), 1e-3);
+    EXPECT_LT(difference(shown(bare(), "normalTexture", 0.5, {0, 1, 0, -1}), shown(coated(), "clearcoatNormalTexture", 0.5, {0, 1, 0, -1})), 1e-3);
+    EXPECT_LT(difference(shown(bare(), "normalTexture", 1, {1, 0, 0, 1}, true), shown(coated(), "clearcoatNormalTexture", 1, {1, 0, 0, 1}, true)), 1e-3);
+}
+
 TEST(GltfTangents, WithoutThemTextureCoordinatesServe) {
     SquareFile file(brushed(0.8, 0.4));
     const auto expected = picture(file);

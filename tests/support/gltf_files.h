@@ -1,6 +1,7 @@
 // Small glTF files made by tests: JSON, and one buffer with the data of its accessors.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -64,9 +65,21 @@ public:
         return static_cast<int>(json["bufferViews"].size()) - 1;
     }
 
+    // The same with the bounds of each component.
+    int add_bounded(const std::vector<float>& values, const char* type, int components) {
+        const int accessor = add_floats(values, type, components);
+        std::vector<float> low(values.begin(), values.begin() + components), high = low;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::size_t k = i % static_cast<std::size_t>(components);
+            low[k] = std::min(low[k], values[i]), high[k] = std::max(high[k], values[i]);
+        }
+        json["accessors"].back()["min"] = low, json["accessors"].back()["max"] = high;
+        return accessor;
+    }
+
     // A primitive of these positions; returns it for more attributes.
     Json& add_mesh(const std::vector<float>& positions) {
-        const int accessor = add_floats(positions, "VEC3", 3);
+        const int accessor = add_bounded(positions, "VEC3", 3);
         json["meshes"].push_back({{"primitives", Json::array({{{"attributes", {{"POSITION", accessor}}}}})}});
         return json["meshes"].back()["primitives"][0];
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/materials.h"
+#include "tables/sheen_albedo.h"
 
 namespace wavelobe::test {
 
@@ -45,18 +46,24 @@ constexpr Uint32 first_principled_extension =
     (sizeof(RoughTransmittance) + sizeof(::Material) - 1) / sizeof(::Material);
 
 constexpr Packed3 unstretched{1.0F, 0.5F, 0.0F};
+constexpr Packed3 upright{0.5F, 0.5F, 1.0F};
 
 inline MetallicRoughnessLayers layers_of(float coat, float coat_roughness, float transmission, float specular, Packed3 specular_color,
-                                         Packed3 anisotropy = unstretched) {
+                                         Packed3 anisotropy = unstretched, Packed3 coat_normal = upright, Packed3 sheen_color = {0.0F, 0.0F, 0.0F},
+                                         float sheen_roughness = 0.0F) {
     return {{coat, WAVELOBE_NONE}, {coat_roughness, WAVELOBE_NONE}, {transmission, WAVELOBE_NONE}, {specular, WAVELOBE_NONE}, {specular_color, WAVELOBE_NONE},
-            {anisotropy, WAVELOBE_NONE}};
+            {anisotropy, WAVELOBE_NONE}, {coat_normal, WAVELOBE_NONE}, {sheen_color, WAVELOBE_NONE}, {sheen_roughness, WAVELOBE_NONE}, 0U};
 }
 
 // Sets of layers, by their order in lobe_extensions().
 inline const std::vector<MetallicRoughnessLayers>& layer_sets() {
     static const std::vector<MetallicRoughnessLayers> sets{layers_of(1.0F, 0.3F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}), layers_of(0.4F, 0.7F, 0.8F, 0.6F, {0.2F, 0.1F, 0.02F}),
                                                            layers_of(0.0F, 0.0F, 1.0F, 1.0F, {0.04F, 0.04F, 0.04F}), layers_of(1.0F, 0.0F, 0.0F, 0.0F, {0.0F, 0.0F, 0.0F}),
-                                                           layers_of(0.0F, 0.0F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}, {0.8F, 0.9F, 0.7F}), layers_of(0.5F, 0.3F, 0.5F, 0.8F, {0.1F, 0.1F, 0.2F}, {0.3F, 0.5F, 1.0F})};
+                                                           layers_of(0.0F, 0.0F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}, {0.8F, 0.9F, 0.7F}), layers_of(0.5F, 0.3F, 0.5F, 0.8F, {0.1F, 0.1F, 0.2F}, {0.3F, 0.5F, 1.0F}),
+                                                           layers_of(1.0F, 0.4F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}, unstretched, {0.7F, 0.4F, 0.9F}),
+                                                           layers_of(0.0F, 0.0F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}, unstretched, upright, {1.0F, 1.0F, 1.0F}, 0.5F),
+                                                           layers_of(0.5F, 0.3F, 0.4F, 0.8F, {0.1F, 0.1F, 0.2F}, unstretched, upright, {0.6F, 0.8F, 0.3F}, 1.0F),
+                                                           layers_of(0.0F, 0.0F, 0.0F, 1.0F, {0.04F, 0.04F, 0.04F}, unstretched, upright, {1.0F, 1.0F, 1.0F}, 0.12F)};
     return sets;
 }
 
@@ -65,7 +72,12 @@ inline const std::vector<::Material>& lobe_extensions() {
         std::vector<::Material> list;
         append_extension(list, falling_transmittance());
         for (const PrincipledParameters& p : principled_extensions()) append_extension(list, p);
-        for (const MetallicRoughnessLayers& layers : layer_sets()) append_extension(list, layers);
+        const std::size_t table = list.size() + layer_sets().size();
+        for (MetallicRoughnessLayers layers : layer_sets()) {
+            layers.sheen_albedo = static_cast<Uint32>(table - list.size());
+            append_extension(list, layers);
+        }
+        append_extension(list, sheen_albedo());
         return list;
     }();
     return records;

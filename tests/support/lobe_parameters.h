@@ -13,7 +13,8 @@ struct LobeParameters {
     std::string name;
     Material material;
     double width = 1.0;  // angular scale of the lobe in radians: narrow ones are binned about their axes
-    bool reciprocal = true;  // the thin principled material is not: a microfacet transmits behind itself alone
+    bool reciprocal = true;  // the thin principled material is not: a microfacet transmits behind itself alone; nor are mapped normals
+    double rounding = 32;    // of values, in units of the last place: some thirty operations in a row
 };
 
 // A white material: all of it that a lobe does not set is neutral.
@@ -71,9 +72,20 @@ inline Material metallic_roughness(Material m, float metallic, float roughness, 
     return m;
 }
 
+// Lobes read layers where a material has this one.
+inline Uint32 layered_bit() {
+    enum {
+#define LOBE(name, NAME, class) LOBE_##NAME,
+#include "bsdf/lobes.def"
+#undef LOBE
+    };
+    return 1U << LOBE_LAYERED_METALLIC_ROUGHNESS;
+}
+
 // With a set of layer_sets(); those that let light through have two sides alike.
 inline Material layered(Material m, std::size_t set) {
     m.extension = layers_record(set);
+    m.lobes = layered_bit();
     m.eta = {1.0F, 1.0F, 1.0F};
     if (layer_sets()[set].transmission.value > 0.0F) m.flags |= MATERIAL_TRANSMISSIVE | MATERIAL_THIN;
     return m;
@@ -167,9 +179,18 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
           {"pane", layered(metallic_roughness(white, 0.0F, 0.4F), 2)},
           {"brushed", layered(metallic_roughness(coloured, 1.0F, 0.3F), 4)},
           {"brushed_pane", layered(metallic_roughness(coloured, 0.2F, 0.5F), 5)},
+          {"below_sheen", layered(metallic_roughness(coloured, 0.4F, 0.5F), 7)},
+          {"pane_below_sheen", layered(metallic_roughness(coloured, 0.2F, 0.5F), 8)},
+          {"tilted_coat", layered(metallic_roughness(coloured, 0.0F, 0.5F), 6), 1.0, false},
           {"smoothest_coat", layered(metallic_roughness(white, 0.0F, 0.0F), 3), 1e-4}}},
         {"layered_metallic_roughness_base",
          {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},
+        {"sheen_metallic_roughness_base",
+         // Masking is the exponential of up to 20.
+         {{"white", layered(metallic_roughness(white, 0.0F, 0.5F), 7), 1.0, true, 200},
+          {"metal", layered(metallic_roughness(white, 1.0F, 0.5F), 7), 1.0, true, 200},
+          {"rich", layered(metallic_roughness(coloured, 0.3F, 0.5F), 8), 1.0, true, 200},
+          {"smooth", layered(metallic_roughness(white, 0.0F, 0.5F), 9), 1.0, true, 200}}},
         // But for the balanced one, Ward's highlights are not bounded: faint ones gain nothing.
         {"ward",
          {{"balanced", rough(coloured, 0.3F, 0.3F)},

@@ -55,7 +55,7 @@ struct LobeQuery {
 class LobeProbe {
 public:
     LobeProbe(const LobeName& lobe, int lanes)
-        : lanes_(lanes), probe_(source(lobe), {.lanes = lanes, .defines = "-DHAS_TEXTURES=0"}) {}
+        : lanes_(lanes), probe_(source(lobe), {.lanes = lanes, .defines = "-DHAS_TEXTURES=0 -DHAS_COAT_NORMALS=1"}) {}
 
     std::vector<LobeResult> eval(const std::vector<Material>& materials, const std::vector<LobeQuery>& queries) {
         const std::vector<float> out = run("evaluate", materials, queries, 4);
@@ -113,8 +113,14 @@ private:
 
     static std::string source(const LobeName& lobe) {
         std::string text = R"(
+            #define LOBE(name, NAME, class) LOBE_##NAME,
+            enum {
+            #include "bsdf/lobes.def"
+            };
+            #undef LOBE
             #include "bsdf/@.h"
-            #define INPUT(index, i) {as_UInt(load((global const float *)(index) + (i))), ZERO, ZERO, materials, 0, 0}
+            #define INPUT(index, i) {as_UInt(load((global const float *)(index) + (i))), ZERO, ZERO, materials, 0, 0, \
+                                      {{ONE, ZERO, ZERO}, {ZERO, ONE, ZERO}, {ZERO, ZERO, ONE}}}
             #define LOAD3(p, first, i) vec3(load((p) + (first) * n + (i)), load((p) + ((first) + 1) * n + (i)), \
                                             load((p) + ((first) + 2) * n + (i)))
             INLINE void store3(global float *p, uint n, size_t i, Vec3 v) {

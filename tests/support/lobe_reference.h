@@ -131,12 +131,40 @@ inline ReferenceValue reference_metallic_roughness_base(const ::Material& m, con
 struct LayeredTerms {
     GltfTerms surface, coat;
     double coat_fresnel, base_share;  // at the half vector
+    double coat_cosine;               // between wo and the normal of the coat
     double coat_chance, surface_chance, through_chance;
+    double sheen, sheen_rest;         // BRDF of white sheen, and what it leaves
+    double sheen_chance, base_chance; // in their lobe
     MetallicRoughnessLayers layers;
     bool through = false;
 };
 
 inline double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+// KHR_materials_sheen, the directional albedo by the same table.
+inline double reference_sheen_albedo(const SheenAlbedo& table, double roughness, double cosine) {
+    const double least = static_cast<double>(SHEEN_LEAST_ROUGHNESS);
+    const double y = (roughness - least) / (1.0 - least) * (SHEEN_ROUGHNESSES - 1), x = std::sqrt(std::min(cosine, 1.0)) * (SHEEN_COSINES - 1);
+    const auto row = std::min(static_cast<std::size_t>(y), std::size_t{SHEEN_ROUGHNESSES - 2});
+    const auto column = std::min(static_cast<std::size_t>(x), std::size_t{SHEEN_COSINES - 2});
+    const auto along = [&](std::size_t r) {
+        const float* at = table.at + r * SHEEN_COSINES + column;
+        return std::lerp(static_cast<double>(at[0]), static_cast<double>(at[1]), x - static_cast<double>(column));
+    };
+    return std::lerp(along(row), along(row + 1), y - static_cast<double>(row));
+}
+
+inline double reference_sheen(double roughness, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const double alpha = roughness * roughness, t = (1.0 - alpha) * (1.0 - alpha);
+    const auto fit = [&](double x) {
+        return std::lerp(21.5473, 25.3245, t) / (1.0 + std::lerp(3.82987, 3.32435, t) * std::pow(x, std::lerp(0.19823, 0.16801, t))) +
+               std::lerp(-1.97760, -1.27393, t) * x + std::lerp(-4.32054, -4.85967, t);
+    };
+    const auto masking = [&](double c) { return std::exp(c < 0.5 ? fit(c) : 2.0 * fit(0.5) - fit(std::max(1.0 - c, 0.0))); };
+    const glm::dvec3 h = glm::normalize(wi + wo);
+    const double d = (2.0 + 1.0 / alpha) * std::pow(h.x * h.x + h.y * h.y, 0.5 / alpha) / (2.0 * pi);
+    return d / ((1.0 + masking(wi.z) + masking(wo.z)) * 4.0 * wi.z * wo.z);
+}
 
 inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3 wi, glm::dvec3 wo) {
     LayeredTerms t{};
@@ -149,7 +177,12 @@ inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3
     t.surface = gltf_terms(m, wi, wo, t.layers.anisotropy.value);
     ::Material coat = m;
     coat.alpha_u.value = t.layers.coat_roughness.value;
-    t.coat = gltf_terms(coat, wi, wo);
+    // About the coat's own normal.
+    const glm::dvec3 n = glm::normalize(2.0 * to_double(t.layers.coat_normal.value) - 1.0);
+    const glm::dvec3 s = glm::normalize(glm::cross(glm::abs(n.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0), n));
+    const auto on_coat = [&](const glm::dvec3& v) { return glm::dvec3(glm::dot(v, s), glm::dot(v, glm::cross(n, s)), glm::dot(v, n)); };
+    const glm::dvec3 coat_wi = on_coat(wi), coat_wo = on_coat(wo);
+    if (coat_wi.z > 0.0 && coat_wo.z > 0.0) t.coat = gltf_terms(coat, coat_wi, coat_wo), t.coat_cosine = coat_wo.z;
     const double specular = t.layers.specular.value;
     const glm::dvec3 f0 = glm::min(to_double(t.layers.specular_color.value), glm::dvec3(1.0)) * specular;
     const double metallic = m.metallic.value;
@@ -160,10 +193,20 @@ inline std::optional<LayeredTerms> layered_terms(const ::Material& m, glm::dvec3
     const double weight = std::pow(1.0 - wi.z, 5.0);
     const glm::dvec3 base = to_double(m.diffuse.value);
     const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * weight, base + (1.0 - base) * weight, metallic);
-    const double c = coat_fresnel(weight);
-    const double s = (1.0 - c) * largest(reflectance);
-    const double r = static_cast<double>(t.layers.transmission.value) * base_share(weight) * largest(base);
-    if (c + s + r > 0.0) t.coat_chance = c / (c + s + r), t.surface_chance = s / (c + s + r), t.through_chance = r / (c + s + r);
+    SheenAlbedo table;
+    std::memcpy(&table, &lobe_extensions()[m.extension + t.layers.sheen_albedo], sizeof table);
+    const double roughness = std::max(t.layers.sheen_roughness.value, SHEEN_LEAST_ROUGHNESS);
+    const double sheen_color = largest(to_double(t.layers.sheen_color.value));
+    const double seen = reference_sheen_albedo(table, roughness, wi.z), most = std::max(seen, reference_sheen_albedo(table, roughness, wo.z));
+    const double seen_rest = 1.0 - sheen_color * std::min(seen, 1.0);
+    t.sheen = reference_sheen(roughness, wi, wo) / std::max(most, 1.0);
+    t.sheen_rest = 1.0 - sheen_color * std::min(most, 1.0);
+    t.sheen_chance = (1.0 - coat_fresnel(weight)) * (1.0 - seen_rest);
+    t.base_chance = (1.0 - static_cast<double>(t.layers.transmission.value)) * base_share(weight) * largest(base) * seen_rest;
+    const double c = coat_wi.z > 0.0 ? coat_fresnel(std::pow(1.0 - std::min(coat_wi.z, 1.0), 5.0)) : 0.0;
+    const double r = (1.0 - coat_fresnel(weight)) * largest(reflectance) * seen_rest;
+    const double p = static_cast<double>(t.layers.transmission.value) * base_share(weight) * largest(base) * seen_rest;
+    if (c + r + p > 0.0) t.coat_chance = c / (c + r + p), t.surface_chance = r / (c + r + p), t.through_chance = p / (c + r + p);
     return t;
 }
 
@@ -173,14 +216,14 @@ inline ReferenceValue reference_layered(const ::Material& m, const glm::dvec3& w
     const glm::dvec3 base = to_double(m.diffuse.value);
     const double cosine = std::abs(wo.z);
     if (t->through)
-        return {base * (static_cast<double>(t->layers.transmission.value) * t->base_share * t->surface.specular_brdf * cosine),
+        return {base * (static_cast<double>(t->layers.transmission.value) * t->base_share * t->surface.specular_brdf * t->sheen_rest * cosine),
                 t->through_chance * t->surface.pdf};
     const double specular = t->layers.specular.value;
     const glm::dvec3 f0 = glm::min(to_double(t->layers.specular_color.value), glm::dvec3(1.0)) * specular;
     const double w = t->surface.fresnel;
     const glm::dvec3 reflectance = glm::mix(f0 + (specular - f0) * w, base + (1.0 - base) * w, static_cast<double>(m.metallic.value));
-    const glm::dvec3 value = reflectance * ((1.0 - t->coat_fresnel) * t->surface.specular_brdf) + t->coat_fresnel * t->coat.specular_brdf;
-    return {value * cosine, t->surface_chance * t->surface.pdf + t->coat_chance * t->coat.pdf};
+    const glm::dvec3 value = reflectance * ((1.0 - t->coat_fresnel) * t->surface.specular_brdf * t->sheen_rest * cosine) + t->coat_fresnel * t->coat.specular_brdf * t->coat_cosine;
+    return {value, t->surface_chance * t->surface.pdf + t->coat_chance * t->coat.pdf};
 }
 
 inline ReferenceValue reference_layered_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
@@ -188,6 +231,15 @@ inline ReferenceValue reference_layered_base(const ::Material& m, const glm::dve
     if (!t || t->through) return {};
     const double share = (1.0 - static_cast<double>(t->layers.transmission.value)) * t->base_share;
     return {to_double(m.diffuse.value) * (share * std::abs(wo.z) / pi), std::abs(wo.z) / pi};
+}
+
+inline ReferenceValue reference_sheen_base(const ::Material& m, const glm::dvec3& wi, const glm::dvec3& wo) {
+    const auto t = layered_terms(m, wi, wo);
+    if (!t || t->through) return {};
+    const double cosine = std::abs(wo.z);
+    const double base = (1.0 - static_cast<double>(t->layers.transmission.value)) * t->base_share * t->sheen_rest / pi;
+    const glm::dvec3 value = to_double(t->layers.sheen_color.value) * ((1.0 - t->coat_fresnel) * t->sheen) + to_double(m.diffuse.value) * base;
+    return {value * cosine, (t->sheen_chance * 0.5 + t->base_chance * cosine) / ((t->sheen_chance + t->base_chance) * pi)};
 }
 
 inline double reference_rough_transmittance(const ::Material& m, double cosine) {
@@ -220,6 +272,7 @@ inline const std::map<std::string, ReferenceEval>& reference_evals() {
         {"metallic_roughness_base", reference_metallic_roughness_base},
         {"layered_metallic_roughness", reference_layered},
         {"layered_metallic_roughness_base", reference_layered_base},
+        {"sheen_metallic_roughness_base", reference_sheen_base},
         {"plastic_base", reference_plastic_base},       {"rough_plastic_coat", reference_rough_plastic_coat},
         {"rough_plastic_base", reference_rough_plastic_base}, {"ward", reference_ward},
         {"principled", reference_principled},           {"principled_base", reference_principled_base},

@@ -42,6 +42,8 @@ std::size_t column_bytes(const Shape& shape, int component_type) {
     return shape.columns == 1 ? bytes : (bytes + 3) / 4 * 4;
 }
 
+bool is_matrix(const Element& accessor) { return accessor.text("type").starts_with("MAT"); }
+
 template <class T>
 T number_at(const char* data) {
     T value;
@@ -102,6 +104,9 @@ Accessors::Block Accessors::block(const Element& place, std::size_t count, const
         place.fault(fmt::format("elements of {} bytes in buffer view {}, whose stride is {}", element_bytes, *index, stride));
         return {};
     }
+    // Matrices have columns that start on multiples of four bytes.
+    if (offset % 4 != 0 && is_matrix(place))
+        place.fault(fmt::format("starts at byte {} of its buffer view; expected a multiple of 4, as of all matrices", offset));
     if ((offset + view.offset) % alignment != 0)
         place.fault(fmt::format("starts at byte {} of its buffer; expected a multiple of {}", offset + view.offset, alignment));
     // The last element need not be followed by the rest of a stride.
@@ -227,6 +232,14 @@ void Accessors::read(std::size_t i, std::vector<Out>& out, Convert convert) cons
     const Sparse& sparse = sparse_[i];
     for (std::size_t k = 0; k < sparse.indices.size(); ++k)
         put(sparse.indices[k], sparse.values.data + k * sparse.values.stride);
+}
+
+void Accessors::refuse_stride(const Element& owner, const char* name) const {
+    const auto index = owner.index(name, size(), "accessors");
+    if (!index) return;
+    const auto view = document_.accessors[*index].index("bufferView", document_.views.size(), "buffer views");
+    if (view && document_.views[*view].stride > 0)
+        owner.fault(fmt::format("`{}` is accessor {} in buffer view {}, which has a `byteStride`; only vertices may have one", name, *index, *view));
 }
 
 std::vector<float> Accessors::floats(std::size_t i) const {

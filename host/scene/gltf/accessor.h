@@ -27,6 +27,13 @@ public:
     std::size_t size() const { return list_.size(); }
     const Accessor& operator[](std::size_t i) const { return list_[i]; }
 
+    // Whether anything says what the numbers are, which are 0 otherwise.
+    bool has_data(std::size_t i) const { return blocks_[i].data != nullptr || !sparse_[i].indices.empty(); }
+
+    // A fault of `owner` where the accessor that its member `name` refers to is in a view with a stride, which vertices alone may have:
+    // readers differ on what that means.
+    void refuse_stride(const Element& owner, const char* name) const;
+
     // All numbers, element by element, as floats: normalized integers in [0, 1] or [-1, 1]. Empty after a fault.
     std::vector<float> floats(std::size_t i) const;
     // The same of unsigned integers.

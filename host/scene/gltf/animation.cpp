@@ -16,12 +16,13 @@ struct Keys {
     std::vector<float> times;   // seconds, ascending
     std::vector<float> values;  // `width` a key; three times that for cubic splines: in-tangent, value, out-tangent
     std::size_t width = 0;
+    bool given = false;  // whether the values are of the file, not zeros for want of any
     Interpolation interpolation = Interpolation::linear;
 };
 
-Keys read_keys(const Element& sampler, const Accessors& accessors) {
+Keys read_keys(const Document& document, const Element& sampler, const Accessors& accessors) {
     Keys keys;
-    for (const char* name : {"input", "output"}) sampler.require(name);
+    for (const char* name : {"input", "output"}) sampler.require(name), accessors.refuse_stride(sampler, name);
     const auto input = sampler.index("input", accessors.size(), "accessors");
     const auto output = sampler.index("output", accessors.size(), "accessors");
     const std::string how = sampler.text("interpolation", "LINEAR");
@@ -29,19 +30,24 @@ Keys read_keys(const Element& sampler, const Accessors& accessors) {
     else if (how == "CUBICSPLINE") keys.interpolation = Interpolation::cubic;
     else if (how != "LINEAR") sampler.fault("interpolation `" + how + "`; expected LINEAR, STEP or CUBICSPLINE");
     if (!input || !output || !accessors[*input].readable || !accessors[*output].readable) return {};
+    const Element& times = document.accessors[*input];
+    if (!times.has("min") || !times.has("max"))
+        sampler.fault(fmt::format("`input` is accessor {} without `min` and `max`, which times must have", *input));
     if (accessors[*input].components != 1 || accessors[*input].component_type != 5126) {
         sampler.fault("`input` is not of floats");
         return {};
     }
     keys.times = accessors.floats(*input);
     keys.values = accessors.floats(*output);
+    keys.given = accessors.has_data(*output);
     const auto finite = [](float v) { return std::isfinite(v); };
     if (!std::all_of(keys.times.begin(), keys.times.end(), finite) || !std::all_of(keys.values.begin(), keys.values.end(), finite)) {
         sampler.fault("has keys that are not finite");
         return {};
     }
     if (keys.interpolation == Interpolation::cubic && keys.times.size() < 2) sampler.fault("has one key; cubic splines need two");
-    if (std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater_equal<>()) != keys.times.end()) {
+    // Without data they are all 0, which is no time that anything is between.
+    if (accessors.has_data(*input) && std::adjacent_find(keys.times.begin(), keys.times.end(), std::greater_equal<>()) != keys.times.end()) {
         sampler.fault("has times that do not ascend");
         return {};
     }
@@ -87,6 +93,18 @@ std::vector<double> value_at(const Keys& keys, double time, bool rotation) {
     return out;
 }
 
+// Rotations are unit quaternions but for the tangents of their splines; those that rounding leaves a little off are.
+void check_rotations(const Element& target, const Keys& keys) {
+    const std::size_t rows = keys.interpolation == Interpolation::cubic ? 3 : 1;
+    for (std::size_t key = 0; keys.given && key < keys.times.size(); ++key) {
+        const float* q = keys.values.data() + 4 * (rows * key + rows / 2);
+        const double length = std::sqrt(static_cast<double>(q[0]) * q[0] + static_cast<double>(q[1]) * q[1] + static_cast<double>(q[2]) * q[2] + static_cast<double>(q[3]) * q[3]);
+        if (std::abs(length - 1.0) < 0.05) continue;
+        target.fault(fmt::format("key {} is a `rotation` of length {:.4g}", key, length), "expected a unit quaternion");
+        return;
+    }
+}
+
 // Whether a node has what the keys set, in as many numbers.
 void check_channel(Document& document, const Element& target, const std::string& path, const Keys& keys, std::size_t node) {
     if (keys.width == 0) return;
@@ -102,6 +120,7 @@ void check_channel(Document& document, const Element& target, const std::string&
     } else if (document.nodes[node].has("matrix") && path != "pointer") {
         target.fault(fmt::format("sets the `{}` of node {}, which has a `matrix` instead", path, node));
     }
+    if (path == "rotation" && keys.width == 4) check_rotations(target, keys);
     if (keys.width != expected) target.fault(fmt::format("has {} numbers a key for `{}` of node {}; expected {}", keys.width, path, node, expected));
 }
 
@@ -115,7 +134,7 @@ void set_channel(const std::string& path, const Keys& keys, double time, LocalTr
 
 void animate_one(Document& document, const Element& animation, const Accessors& accessors, std::optional<double> time, NodeTree& tree) {
     std::vector<Keys> samplers;
-    for (const Element& sampler : animation.objects("samplers")) samplers.push_back(read_keys(sampler, accessors));
+    for (const Element& sampler : animation.objects("samplers")) samplers.push_back(read_keys(document, sampler, accessors));
     std::set<std::pair<std::size_t, std::string>> targets;
     for (const Element& channel : animation.objects("channels")) {
         for (const char* name : {"sampler", "target"}) channel.require(name);

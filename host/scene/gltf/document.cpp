@@ -46,6 +46,19 @@ std::string percent_decoded(const std::string& uri) {
     return out;
 }
 
+// A type, parameters with values, and `base64` last, any of which may be absent (RFC 2397).
+bool is_media_type(std::string_view text) {
+    std::size_t at = text.find(';');
+    while (at != std::string_view::npos) {
+        const std::size_t next = text.find(';', at + 1);
+        const std::string_view parameter = text.substr(at + 1, next == std::string_view::npos ? next : next - at - 1);
+        const bool last = next == std::string_view::npos;
+        if (parameter.find('=') == std::string_view::npos && !(last && parameter == "base64")) return false;
+        at = next;
+    }
+    return true;
+}
+
 int base64_digit(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -59,7 +72,7 @@ int base64_digit(char c) {
 
 const std::vector<std::string>& supported_extensions() {
     static const std::vector<std::string> names{"EXT_mesh_gpu_instancing",   "KHR_draco_mesh_compression", "KHR_lights_punctual",        "KHR_materials_anisotropy", "KHR_materials_clearcoat",
-                                                "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_specular",
+                                                "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_sheen",        "KHR_materials_specular",
                                                 "KHR_materials_transmission",    "KHR_materials_unlit",    "KHR_materials_volume",
                                                 "KHR_mesh_quantization",         "KHR_texture_transform"};
     return names;
@@ -147,6 +160,8 @@ void Document::parse_json(std::string_view text) {
     } catch (const Json::exception& error) {
         throw InputError(Fault{file, 0, 0, "", std::string("not valid JSON: ") + error.what(), "expected a glTF 2.0 document"});
     }
+    if (text.starts_with("\xef\xbb\xbf"))
+        throw InputError(Fault{file, 0, 0, "", "starts with a byte order mark; glTF is UTF-8 without one", "save it again without"});
     if (!json_.is_object())
         throw InputError(Fault{file, 1, 1, "", "is " + describe(json_) + "; expected the object of a glTF 2.0 document", ""});
 }
@@ -205,10 +220,16 @@ std::optional<std::string> Document::resolve(const std::string& uri, const std::
     return (std::filesystem::path(folder) / name).string();
 }
 
+std::string data_type(const std::string& uri) { return uri.substr(5, uri.find_first_of(";,") - 5); }
+
 std::optional<std::string> Document::decode_data_uri(const std::string& uri, const std::string& path) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos) {
         faults.add(path, "a data URI without a comma before its data", "");
+        return {};
+    }
+    if (!is_media_type(std::string_view(uri).substr(5, comma - 5))) {
+        faults.add(path, fmt::format("`{:.200}` is no data URI", uri.substr(0, comma)), "expected data:TYPE;base64,DATA");
         return {};
     }
     if (uri.substr(0, comma).find(";base64") == std::string::npos) return percent_decoded(uri.substr(comma + 1));
@@ -239,7 +260,13 @@ std::optional<std::string> Document::decode_data_uri(const std::string& uri, con
 std::string Document::read_buffer(const Element& buffer, std::size_t index) {
     const std::string uri = buffer.text("uri");
     const std::string path = buffer.path() + "/uri";
-    if (is_data_uri(uri)) return decode_data_uri(uri, path).value_or("");
+    if (is_data_uri(uri)) {
+        const std::string type = data_type(uri);
+        const auto bytes = decode_data_uri(uri, path);
+        if (bytes && type != "application/octet-stream" && type != "application/gltf-buffer")
+            faults.add(path, "a data URI of type `" + type.substr(0, 100) + "`", "expected application/octet-stream or application/gltf-buffer");
+        return bytes.value_or("");
+    }
     const auto name = resolve(uri, path);
     if (!name) return {};
     try {
@@ -289,6 +316,8 @@ void Document::read_views() {
         const auto length = static_cast<std::size_t>(view.whole("byteLength", 0, 1, std::int64_t{1} << 50));
         const auto stride = static_cast<std::size_t>(view.whole("byteStride", 0, 4, 252));
         if (stride > length) view.fault(fmt::format("a `byteStride` of {} in {} bytes", stride, length));
+        const std::int64_t target = view.whole("target", 34962, 0, 65535);
+        if (stride > 0 && target == 34963) view.fault(fmt::format("a `byteStride` of {} in a view of indices, which have none", stride));
         if (stride % 4 != 0) view.fault(fmt::format("a `byteStride` of {}; expected a multiple of 4", stride));
         const bool empty = buffer && std::find(empty_.begin(), empty_.end(), *buffer) != empty_.end();
         if (empty && view.extension("EXT_meshopt_compression").present())

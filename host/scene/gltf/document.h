@@ -63,6 +63,8 @@ private:
     std::vector<std::size_t> empty_;  // buffers without bytes
 };
 
+// The media type that a data URI states.
+std::string data_type(const std::string& uri);
 inline bool is_data_uri(const std::string& uri) { return uri.starts_with("data:"); }
 
 // For messages: the extensions of which something is read.

@@ -56,6 +56,7 @@ public:
     Element(const Json* value, std::string path, Faults* faults) : value_(value), path_(std::move(path)), faults_(faults) {}
 
     bool present() const { return value_ != nullptr; }
+    const Json* json() const { return value_; }  // null: absent
     const std::string& path() const { return path_; }
     void fault(const std::string& message, const std::string& hint = "") const { faults_->add(path_, message, hint); }
 

@@ -54,6 +54,8 @@ Emitter emitter_of(const Punctual& light, const glm::dmat4& world) {
 
 void add_punctual_lights(Document& document, const NodeTree& tree, Scene& scene) {
     std::vector<Punctual> lights;
+    document.root.extension("KHR_lights_punctual").require("lights");
+    document.root.extension("KHR_lights_punctual").refuse_empty("lights");
     for (const Element& light : document.root.extension("KHR_lights_punctual").objects("lights")) lights.push_back(read_light(light));
     const auto light_of = [&](std::size_t node) {
         return document.nodes[node].extension("KHR_lights_punctual").index("light", lights.size(), "lights");

@@ -51,7 +51,10 @@ bool turn_over(Material& material) {
         return turned;
     }
     auto* layers = std::get_if<MetallicRoughness>(&material.model);
-    if (layers == nullptr || layers->anisotropy.value.z == 0.0F) return false;
+    if (layers == nullptr) return false;
+    const bool coated = layers->clearcoat_normal && layers->clearcoat_normal->texture;
+    if (coated) turn_over(*layers->clearcoat_normal);
+    if (layers->anisotropy.value.z == 0.0F) return coated;
     turn_over(layers->anisotropy);
     return true;
 }
@@ -119,8 +122,10 @@ void Materials::read_layers(const Element& material, MetallicRoughness& model, A
     const Element coat = material.extension("KHR_materials_clearcoat");
     model.clearcoat = read_scalar(coat, "clearcoatFactor", 0.0, "clearcoatTexture", Transfer::linear, 0, out);
     model.clearcoat_roughness = read_scalar(coat, "clearcoatRoughnessFactor", 0.0, "clearcoatRoughnessTexture", Transfer::linear, 1, out);
-    if (coat.has("clearcoatNormalTexture"))
-        document_.warn(fmt::format("{}: {}/clearcoatNormalTexture: passed over", document_.file, coat.path()));
+    const Element sheen = material.extension("KHR_materials_sheen");
+    model.sheen_color.value = rgb(sheen.vector<3>("sheenColorFactor", {0, 0, 0}, unit));
+    model.sheen_color.texture = take(sheen, "sheenColorTexture", Transfer::of_format, out);
+    model.sheen_roughness = read_scalar(sheen, "sheenRoughnessFactor", 0.0, "sheenRoughnessTexture", Transfer::alpha, 0, out);
     const Element transmission = material.extension("KHR_materials_transmission");
     model.transmission = read_scalar(transmission, "transmissionFactor", 0.0, "transmissionTexture", Transfer::linear, 0, out);
 }
@@ -194,8 +199,6 @@ MaterialModel Materials::read_model(const Element& material, Appearance& out) {
 }
 
 void Materials::name_what_is_left_out(const Element& material) {
-    if (material.extension("KHR_materials_sheen").present())
-        document_.warn(fmt::format("{}: {}: KHR_materials_sheen is passed over", document_.file, material.path()));
     const Element occlusion = material.object("occlusionTexture");
     if (occlusion.present()) {
         occlusion.index("index", document_.textures.size(), "textures");
@@ -210,6 +213,22 @@ NormalMapped Materials::read_normal_map(const Element& material, Appearance& out
     map.scale = static_cast<float>(material.object("normalTexture").number("scale", 1.0));
     map.perturbation.soften_terminator = false;
     return map;
+}
+
+// Of the coat, which without one keeps to the surface's own normal whatever map is below it.
+std::optional<Parameter> Materials::read_coat_normal(const Element& material, bool has_normal_map, Appearance& out) {
+    const Element coat = material.extension("KHR_materials_clearcoat");
+    Parameter normal{{0.5F, 0.5F, 1.0F}, take(coat, "clearcoatNormalTexture", Transfer::linear, out)};
+    const auto scale = static_cast<float>(coat.object("clearcoatNormalTexture").number("scale", 1.0));
+    if (normal.texture && scale != 1.0F) {
+        auto scaled = std::make_shared<Texture>(*normal.texture);
+        std::vector<float>& rgb = std::get<Bitmap>(scaled->source).rgb;
+        for (std::size_t i = 0; i < rgb.size(); ++i)
+            if (i % 3 != 2) rgb[i] = 0.5F + scale * (rgb[i] - 0.5F);
+        normal.texture = std::move(scaled);
+    }
+    if (!normal.texture && !has_normal_map) return {};
+    return normal;
 }
 
 // Its direction is in the same tangent frame.
@@ -241,12 +260,14 @@ int Materials::add(MaterialModel model, const std::string& name) {
 Appearance Materials::read(const Element& material) {
     Appearance out;
     NormalMapped map = read_normal_map(material, out);
+    const std::optional<Parameter> coat_normal = read_coat_normal(material, map.normals.texture != nullptr, out);
     const Parameter anisotropy = read_anisotropy(material, out);
     MaterialModel model = read_model(material, out);
     auto* layers = std::get_if<MetallicRoughness>(&model);
     const bool stretched = anisotropy.value.z > 0.0F;
     if (layers != nullptr) {
         layers->anisotropy = anisotropy;
+        if (layers->clearcoat.value.x > 0.0F) layers->clearcoat_normal = coat_normal;
     } else if (stretched) {
         document_.warn(fmt::format("{}: {}: light that goes through a volume is spread alike in all directions", document_.file,
                                    material.path()));
@@ -258,7 +279,8 @@ Appearance Materials::read(const Element& material) {
     out.single_sided = !material.flag("doubleSided", false) && (unlit || (layers != nullptr && layers->transmission.value.x == 0.0F));
     const std::string name = material.text("name", "material");
     const bool has_normal_map = map.normals.texture != nullptr && !unlit;
-    out.needs_tangents = has_normal_map || (layers != nullptr && stretched);
+    const bool coated = layers != nullptr && layers->clearcoat_normal && layers->clearcoat_normal->texture;
+    out.needs_tangents = has_normal_map || coated || (layers != nullptr && stretched);
     if (has_normal_map) {
         // Maps keep their frame when seen from behind; two sides inside turn it.
         const bool transmits = layers == nullptr || layers->transmission.value.x > 0.0F;

@@ -34,6 +34,7 @@ public:
 private:
     Appearance read(const Element& material);
     NormalMapped read_normal_map(const Element& material, Appearance& out);
+    std::optional<Parameter> read_coat_normal(const Element& material, bool has_normal_map, Appearance& out);
     Parameter read_anisotropy(const Element& material, Appearance& out);
     int add(MaterialModel model, const std::string& name);
     void read_emission(const Element& material, Appearance& out);

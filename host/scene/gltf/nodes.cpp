@@ -63,19 +63,25 @@ void NodeTree::read_parents() {
     // Among nodes with one parent each, a cycle is what no root leads to.
     std::vector<bool> reached(count, false);
     std::vector<std::size_t> pending;
+    root_.resize(count);
     for (std::size_t i = 0; i < count; ++i)
-        if (parent_[i] < 0) pending.push_back(i);
+        if (parent_[i] < 0) pending.push_back(root_[i] = i);
     while (!pending.empty()) {
         const std::size_t node = pending.back();
         pending.pop_back();
         reached[node] = true;
-        pending.insert(pending.end(), children_[node].begin(), children_[node].end());
+        for (const std::size_t child : children_[node]) pending.push_back(child), root_[child] = root_[node];
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (reached[i]) continue;
         document_.nodes[i].fault("is among its own ancestors, or below such a node", "nodes must form trees");
         is_tree_ = false;
     }
+}
+
+bool NodeTree::is_below(std::size_t node, std::size_t ancestor) const {
+    while (node != ancestor && parent_[node] >= 0) node = static_cast<std::size_t>(parent_[node]);
+    return node == ancestor;
 }
 
 std::vector<std::size_t> NodeTree::roots() {

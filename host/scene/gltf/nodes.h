@@ -30,6 +30,12 @@ public:
     std::vector<glm::dmat4> world;      // after place(), of all nodes
     std::vector<std::size_t> shown;     // nodes of the scene, parents first
 
+    // Whether no node has two parents or is among its own ancestors; without that there are no roots.
+    bool is_tree() const { return is_tree_; }
+    std::size_t root_of(std::size_t node) const { return root_[node]; }
+    // Whether `node` is `ancestor` or below it.
+    bool is_below(std::size_t node, std::size_t ancestor) const;
+
     // Fills `world` and `shown`. The scene is the file's default, or its first, or all there is.
     void place();
 
@@ -41,6 +47,7 @@ private:
     Document& document_;
     std::vector<std::vector<std::size_t>> children_;
     std::vector<int> parent_;  // -1: none
+    std::vector<std::size_t> root_;
     bool is_tree_ = true;
 };
 

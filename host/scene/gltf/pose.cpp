@@ -45,7 +45,7 @@ std::vector<glm::dmat4> joint_matrices(Document& document, const Accessors& acce
             element.fault("`inverseBindMatrices` are not finite");
             return {};
         }
-        for (std::size_t j = 0; j < joints.size(); ++j) {
+        for (std::size_t j = 0; accessors.has_data(*index) && j < joints.size(); ++j) {
             const float* m = numbers.data() + 16 * j;
             if (m[3] == 0.0F && m[7] == 0.0F && m[11] == 0.0F && std::abs(m[15] - 1.0F) < 1e-3F) continue;
             element.fault(fmt::format("matrix {} of `inverseBindMatrices` has a last row of {} {} {} {}; expected 0 0 0 1", j, m[3], m[7], m[11], m[15]));

@@ -149,12 +149,13 @@ void Meshes::read_triangles(const Element& primitive, Primitive& out) {
 }
 
 void Meshes::read_influences(const Element& attributes, Primitive& out) {
+    std::vector<float> sums;
     for (int set = 0; set < 8; ++set) {
         const std::string joints = fmt::format("JOINTS_{}", set);
         const std::string weights = fmt::format("WEIGHTS_{}", set);
         if (attributes.has(joints.c_str()) != attributes.has(weights.c_str()))
             attributes.fault(fmt::format("has one of {} and {}; expected both or neither", joints, weights));
-        if (!attributes.has(joints.c_str()) || !attributes.has(weights.c_str())) return;
+        if (!attributes.has(joints.c_str()) || !attributes.has(weights.c_str())) break;
         Influence influence{grouped<glm::vec4>(attribute(attributes, joints, {"VEC4"}, out.mesh.positions.size())),
                             grouped<glm::vec4>(attribute(attributes, weights, {"VEC4"}, out.mesh.positions.size()))};
         for (std::size_t i = 0; i < influence.weights.size(); ++i)
@@ -162,8 +163,13 @@ void Meshes::read_influences(const Element& attributes, Primitive& out) {
                 attributes.fault(fmt::format("{}: element {} is negative", weights, i));
                 break;
             }
+        sums.resize(std::max(sums.size(), influence.weights.size()), 0.0F);
+        for (std::size_t i = 0; i < influence.weights.size(); ++i) sums[i] += glm::dot(influence.weights[i], glm::vec4(1.0F));
         if (!influence.joints.empty() && !influence.weights.empty()) out.influences.push_back(std::move(influence));
     }
+    // What rounding and coarse formats do to sums is far less; a vertex of no weights follows nothing.
+    const auto bad = std::find_if(sums.begin(), sums.end(), [](float sum) { return sum != 0.0F && std::abs(sum - 1.0F) > 0.05F; });
+    if (bad != sums.end()) attributes.fault(fmt::format("the weights of vertex {} sum to {:.4g}; expected 1", bad - sums.begin(), *bad));
 }
 
 std::vector<std::vector<glm::vec2>> Meshes::read_uv_sets(const Element& attributes, std::size_t vertices) {
@@ -176,6 +182,10 @@ std::vector<std::vector<glm::vec2>> Meshes::read_uv_sets(const Element& attribut
 std::vector<glm::vec4> Meshes::read_colors(const Element& attributes, std::size_t vertices, float alpha) {
     const auto accessor = attributes.index("COLOR_0", accessors_.size(), "accessors");
     const std::vector<float> numbers = attribute(attributes, "COLOR_0", {"VEC3", "VEC4"}, vertices);
+    const auto outside = std::find_if(numbers.begin(), numbers.end(), [](float v) { return !(v >= 0.0F && v <= 1.0F); });
+    if (alpha == 1.0F && outside != numbers.end())
+        attributes.fault(fmt::format("COLOR_0: vertex {} has {}; expected numbers from 0 to 1",
+                                     static_cast<std::size_t>(outside - numbers.begin()) / accessors_[*accessor].components, *outside));
     if (!accessor || accessors_[*accessor].components == 4) return grouped<glm::vec4>(numbers);
     std::vector<glm::vec4> out;
     for (const glm::vec3& color : grouped<glm::vec3>(numbers)) out.emplace_back(color, alpha);
@@ -201,6 +211,11 @@ Primitive Meshes::read(const Element& primitive) {
     out.mesh.normals = grouped<glm::vec3>(in_types("NORMAL", {"VEC3"}));
     out.uv_sets = read_uv_sets(attributes, out.mesh.positions.size());
     out.tangents = grouped<glm::vec4>(in_types("TANGENT", {"VEC4"}));
+    const auto tangents = attributes.index("TANGENT", accessors_.size(), "accessors");
+    const bool given = tangents && (unpacked_ || accessors_.has_data(*tangents));
+    const auto bad = std::find_if(out.tangents.begin(), out.tangents.end(), [](const glm::vec4& t) { return std::abs(std::abs(t.w) - 1.0F) > 0.1F; });
+    if (given && bad != out.tangents.end())
+        attributes.fault(fmt::format("TANGENT: vertex {} has a handedness of {}; expected 1 or -1", bad - out.tangents.begin(), bad->w));
     out.colors = read_colors(attributes, out.mesh.positions.size(), 1.0F);
     read_influences(attributes, out);
     for (const Element& target : primitive.objects("targets")) out.targets.push_back(read_target(attributes, target, out.mesh.positions.size()));

@@ -12,6 +12,15 @@ namespace {
 
 constexpr std::int64_t nearest = 9728;
 
+// By the first bytes; empty where they are of none of those that glTF and its extensions know.
+std::string type_of(const std::string& content) {
+    if (content.starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
+    if (content.starts_with("\xff\xd8")) return "image/jpeg";
+    if (content.starts_with("RIFF") && content.substr(8, 4) == "WEBP") return "image/webp";
+    if (content.starts_with("\xabKTX 20\xbb\r\n\x1a\n")) return "image/ktx2";
+    return {};
+}
+
 bool is_filter(std::int64_t value) { return value == 9728 || value == 9729 || (value >= 9984 && value <= 9987); }
 
 Wrap wrap_mode(const Element& sampler, const char* name) {
@@ -52,9 +61,12 @@ void Textures::check() {
     for (const Element& texture : document_.textures) {
         texture.index("sampler", document_.samplers.size(), "samplers");
         image_of(texture);
+        for (const char* other : {"EXT_texture_webp", "KHR_texture_basisu"}) texture.extension(other).index("source", document_.images.size(), "images");
     }
     for (const Element& image : document_.images) {
-        image.index("bufferView", document_.views.size(), "buffer views");
+        const auto view = image.index("bufferView", document_.views.size(), "buffer views");
+        if (image.has("bufferView")) image.require("mimeType");
+        if (view && document_.views[*view].stride > 0) image.fault(fmt::format("is in buffer view {}, which has a `byteStride`; only vertices may have one", *view));
         if (image.present() && image.has("uri") == image.has("bufferView"))
             image.fault("expected either a `uri` or a `bufferView`");
         // Found before any work starts, though nothing may use it.
@@ -75,11 +87,17 @@ void Textures::check_unused() {
     std::vector<bool> plain(document_.images.size(), false);
     for (const Element& texture : document_.textures)
         if (const auto source = texture.index("source", plain.size(), "images")) plain[*source] = true;
-    for (const auto& [key, bitmap] : images_) plain[key.first] = false;
+    std::vector<bool> read(document_.images.size(), false);
+    for (const auto& [key, bitmap] : images_) read[key.first] = true;
+    bool has_webp = false;
+    for (const std::string& name : document_.root.texts("extensionsUsed")) has_webp = has_webp || name == "EXT_texture_webp";
     for (std::size_t i = 0; i < plain.size(); ++i) {
-        if (!plain[i]) continue;
+        if (read[i]) continue;
         try {
-            read_image(document_.images[i], Transfer::linear);
+            const auto content = content_of(document_.images[i]);
+            const std::string type = content ? type_of(*content) : "";
+            if (type == "image/webp" && !has_webp) document_.images[i].fault("is WebP, which `extensionsUsed` does not allow", "expected PNG or JPEG");
+            if (plain[i] || type == "image/png" || type == "image/jpeg") read_image(document_.images[i], Transfer::linear);
         } catch (const InputError& error) {
             document_.faults.add(error, document_.images[i].path());
         }
@@ -99,19 +117,28 @@ void Textures::warn_of_formats(const Element& texture) {
                                names.empty() ? "" : ", only one of " + names));
 }
 
-Bitmap Textures::read_image(const Element& image, Transfer transfer) {
-    std::string name = document_.file + ": " + image.path();
+std::optional<std::string> Textures::content_of(const Element& image) {
     if (const auto view = image.index("bufferView", document_.views.size(), "buffer views")) {
         if (!document_.views[*view].readable) return {};
-        return decode_image(name, std::string(document_.views[*view].bytes), transfer);
+        return std::string(document_.views[*view].bytes);
     }
     const std::string uri = image.text("uri");
-    if (is_data_uri(uri)) {
-        const auto content = document_.decode_data_uri(uri, image.path() + "/uri");
-        return content ? decode_image(name, *content, transfer) : Bitmap{};
-    }
+    if (is_data_uri(uri)) return document_.decode_data_uri(uri, image.path() + "/uri");
     const auto path = document_.resolve(uri, image.path() + "/uri");
-    return path ? decode_image(*path, read_file(*path), transfer) : Bitmap{};
+    return path ? std::optional(read_file(*path)) : std::nullopt;
+}
+
+Bitmap Textures::read_image(const Element& image, Transfer transfer) {
+    const auto content = content_of(image);
+    if (!content) return {};
+    const std::string uri = image.text("uri");
+    const bool beside = image.has("uri") && !is_data_uri(uri);
+    // A type that the file states and the bytes are not of.
+    const std::string found = type_of(*content);
+    for (const std::string& stated : {image.text("mimeType"), is_data_uri(uri) ? data_type(uri) : std::string()})
+        if (!found.empty() && stated.starts_with("image/") && stated != found)
+            image.fault("is stated to be " + stated.substr(0, 100) + ", and its bytes are " + found);
+    return decode_image(beside ? document_.resolve(uri, image.path() + "/uri").value_or(uri) : document_.file + ": " + image.path(), *content, transfer);
 }
 
 const Bitmap* Textures::image(std::size_t index, Transfer transfer) {

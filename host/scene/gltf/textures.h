@@ -20,7 +20,7 @@ public:
 
     // Checks all textures, samplers and images but the contents of images that nothing uses.
     void check();
-    // Decodes the PNG and JPEG images that nothing has asked for, to find what is damaged.
+    // Decodes the images that nothing has asked for, to find what is damaged: those that textures name, and PNG and JPEG ones.
     void check_unused();
     // The texture of a reference, each texel scaled; null where there is none, or a faulty one. Each image is read once for each
     // use of its channels.
@@ -30,6 +30,8 @@ private:
     std::optional<std::size_t> image_of(const Element& texture);
     const Bitmap* image(std::size_t index, Transfer transfer);
     void warn_of_formats(const Element& texture);
+    // The bytes of an image; nothing after a fault.
+    std::optional<std::string> content_of(const Element& image);
     Bitmap read_image(const Element& image, Transfer transfer);
     void set_sampler(const Element& texture, Bitmap& bitmap);
 
