@@ -36,6 +36,8 @@ MUTANTS = [
      ["stages_test_broken_samples"]),
     ("light samples' weight left out beside BSDF samples", "sampling/mis.h", "    return power_heuristic(pdf_light, pdf_bsdf);", "    return ONE;",
      ["verify_test_estimators"] + SCENES),
+    ("last child left out where a light's probability is found again", "lights/light_tree.h", "mine / running_sums(importances).s7",
+     "mine / running_sums(importances).s6", ["kernels_test_light_tree"]),
     ("cosine of the light forgotten", "lights/area.h", "inverse_area / fabs(cosine)", "inverse_area", SCENES),
 ]
 
