@@ -58,6 +58,7 @@ INSTANCES = [
     (shape.instance(Ref("group")),),
     (shape.instance(Ref("group"), to_world=Transform("scale 1.4 0.8 1", "rotate 0 1 0 40", "translate -0.8 0.4 0")),
      shape.instance(Ref("group"), to_world=Transform("scale -1 1.2 1", "rotate z 20", "translate 0.9 0.3 0"))),
+    (shape.merge(shape.ply(BOTH, filename="cloth.ply"), shape.merge(shape.cube(BOTH, to_world=UP), shape.sphere(PATTERN))),),
     (shape.instance(Ref("group"), to_world=Transform("matrix 1 0.4 0 0 0 1 0.2 0.2 0.3 0 1 0 0 0 0 1")),),
 ]
 
@@ -115,6 +116,9 @@ LIGHTS = [
     (emitter.projector(to_world=DOWN, irradiance=SLIDE, focal_length="70mm"),),
     (emitter.projector(to_world=DOWN, irradiance=(3.0, 2.0, 1.0), fov=30.0),),
     (emitter.projector(to_world=DOWN, irradiance=texture.bitmap(filename="slide.png", raw=True, filter_type="nearest", to_uv=Transform("scale 2 1 1")), fov=40.0),),
+    *((emitter.point(position=Point(1, 3, 2), intensity=5.0, sampling_weight=w), emitter.spot(to_world=DOWN, sampling_weight=w),
+       emitter.constant(radiance=0.2, sampling_weight=w)) for w in (0.0, 3.0)),
+    (shape.disk(emitter.area(radiance=3.0, sampling_weight=0.0), to_world=Transform("scale 1.5", "rotate x 90", "translate 0 3 0")), emitter.constant(radiance=0.2)),
     (emitter.point(position=Point(1, 3, 2), intensity=5.0), emitter.directional(direction=Vector(0.5, -1, -0.2)), emitter.constant(radiance=0.2)),
 ]
 

@@ -1,7 +1,6 @@
 """The cases of plugins.py that are BSDFs: one line each."""
 
-from plugin_scenes import (FLOOR, LAMP, SKY, Case, Node, Point, Ref, Spectrum, Transform, balls_and_card, bsdf, emitter, integrator, shape,
-                           texture)
+from plugin_scenes import Case, Spectrum, Transform, balls_and_card, bsdf, integrator, texture
 
 GREY = texture.bitmap(filename="grey.png", raw=True)
 PAINT = texture.bitmap(filename="paint.png")
@@ -144,15 +143,6 @@ PRINCIPLED = [
     bsdf.principledthin(specular_reflectance_sampling_rate=0.4, specular_transmittance_sampling_rate=2.0, spec_trans=0.5,
                         diffuse_transmittance_sampling_rate=3.0, diffuse_reflectance_sampling_rate=0.5),
 ]
-
-# Where Mitsuba is known to differ. A card fills the picture.
-CLOSE = Transform("scale 8", "translate 0.3 1.6 0")
-EVEN = emitter.constant(radiance=1.0)
-HALF = bsdf.diffuse(reflectance=0.5)
-
-
-def card(material, *lights):
-    return (shape.rectangle(material, to_world=CLOSE), *lights)
 
 
 def cases():

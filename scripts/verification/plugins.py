@@ -22,6 +22,7 @@ import numpy as np
 from peers import SIGNIFICANCE, blocks
 from plugin_data import write_all
 import plugin_cases
+import plugin_differences
 import plugin_materials
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
@@ -142,7 +143,8 @@ class Comparison:
         """What differs, in words; empty if nothing does."""
         found = []
         expected = self.case.ratio
-        if abs(self.ratio - (expected or 1.0)) > BOUND * (expected or 1.0) + 3.0 * self.error:
+        due = 1.0 if expected is None else expected
+        if abs(self.ratio - due) > BOUND * due + 3.0 * self.error:
             found.append("the mean")
         if expected is None:
             found += [f"{kind} {place} p {p:.1g}" for kind, p, place, _ in self.tests if p < threshold]
@@ -158,7 +160,7 @@ def row(group, tests, differing, seconds):
 def main():
     import mitsuba as mi
 
-    cases = [*plugin_materials.cases(), *plugin_cases.cases()]
+    cases = [*plugin_materials.cases(), *plugin_cases.cases(), *plugin_differences.cases()]
     names = [a for a in sys.argv[1:] if a != "--list"]
     chosen = [c for c in cases if not names or any(n in f"{c.group} {c.name}" for n in names)]
     if "--list" in sys.argv:

@@ -219,6 +219,20 @@ TEST(MitsubaReader, AreaEmitterBelongsToItsShape) {
     EXPECT_EQ(std::get<Diffuse>(scene.materials.at(0).model).reflectance.value, Rgb(0.0F));
 }
 
+TEST(MitsubaReader, LightsThatAreNeverSampledShineOnlyWhereTheyAreMet) {
+    const auto lights = [](const char* weight) {
+        const std::string inner = std::string("<float name=\"sampling_weight\" value=\"") + weight + "\"/></emitter>";
+        return SceneFolder().elements(R"(<emitter type="point">)" + inner + R"(<emitter type="directional">)" + inner +
+                                      R"(<emitter type="spot">)" + inner + R"(<emitter type="projector">)" + inner +
+                                      R"(<emitter type="constant">)" + inner + R"(<shape type="disk"><emitter type="area">)" + inner + "</shape>");
+    };
+    EXPECT_EQ(lights("3").emitters.size(), 5U);
+    EXPECT_TRUE(lights("3").warnings.empty());
+    ASSERT_EQ(lights("0").emitters.size(), 1U);
+    EXPECT_TRUE(std::holds_alternative<ConstantEmitter>(lights("0").emitters[0]));
+    EXPECT_TRUE(lights("0").shapes.at(0).emitter.has_value());
+}
+
 TEST(MitsubaReader, ShapesShareAnAreaEmitterThatStandsBesideThem) {
     const SceneFolder folder;
     const std::string lamp = R"(<emitter type="area" id="lamp"><rgb name="radiance" value="3, 2, 1"/></emitter>)";
