@@ -1,6 +1,6 @@
 """The cases of plugins.py that are no BSDFs: one line each."""
 
-from plugin_scenes import (FLOOR, LAMP, SKY, Case, Point, Ref, Spectrum, Transform, Vector, Xml, balls_and_card, bsdf, emitter, film,
+from plugin_scenes import (LAMP, SKY, Case, Point, Ref, Spectrum, Transform, Vector, Xml, balls_and_card, bsdf, emitter, film,
                            integrator, lit, medium, painted, rfilter, sensor, shape, shaped, spectrum, texture)
 
 PATTERN = bsdf.diffuse(reflectance=texture.bitmap(filename="paint.png"))
@@ -23,10 +23,10 @@ SHAPES = [
     shape.rectangle(BOTH, to_world=Transform("matrix 1 0.5 0 0 0 1 0 1.2 0 0.3 1 0 0 0 0 1")),
     shape.rectangle(PATTERN, to_world=Transform("scale -1 1 1", "translate 0 1.2 0")),
     shape.rectangle(SHINY, to_world=Transform("scale 1.2 0.6 1", "rotate z 30", "translate 0 1.2 0")),
-    shape.cube(PATTERN, to_world=Transform("scale 0.7", "rotate 1 1 0 40", "translate 0 1.2 0")),
+    shape.cube(PATTERN, to_world=Transform("scale 0.7", "rotate 0.6 0.8 0 40", "translate 0 1.2 0")),
     shape.cube(PATTERN, to_world=Transform("scale 0.7", "translate 0 1.2 0"), flip_normals=True),
-    shape.cube(PATTERN, to_world=Transform("scale -0.7 0.7 0.7", "rotate 1 1 0 40", "translate 0 1.2 0")),
-    shape.cube(SHINY, to_world=Transform("scale 0.7 1 0.5", "rotate 1 1 0 40", "translate 0 1.2 0")),
+    shape.cube(PATTERN, to_world=Transform("scale -0.7 0.7 0.7", "rotate 0.6 0.8 0 40", "translate 0 1.2 0")),
+    shape.cube(SHINY, to_world=Transform("scale 0.7 1 0.5", "rotate 0.6 0.8 0 40", "translate 0 1.2 0")),
     shape.disk(PATTERN, to_world=Transform("rotate y 20", "translate 0 1.2 0")),
     shape.disk(PATTERN, to_world=Transform("rotate y 20", "translate 0 1.2 0"), flip_normals=True),
     shape.disk(BOTH, to_world=Transform("scale 1.3 0.7 1", "rotate z 20", "translate 0 1.2 0")),
@@ -72,10 +72,13 @@ TEXTURES = [
       for w in ("repeat", "mirror", "clamp") for f in ("bilinear", "nearest")),
     texture.bitmap(filename="paint.png", format="fp16"),
     texture.bitmap(filename="paint.png", accel=False),
+    *(texture.bitmap(filename=name) for name in ("form.png", "form.jpg", "form.ppm", "form.bmp", "form.tga", "form.hdr", "form.pfm", "alpha.png", "deep.png",
+                                                 "half.exr", "luminance.exr")),
+    texture.bitmap(filename="form.jpg", raw=True), texture.bitmap(filename="deep.png", raw=True), texture.bitmap(filename="half.exr", raw=True),
+    texture.bitmap(filename="paint.png", to_uv=Transform("matrix 2 1 0 0.3 0.5 3 0 0.1 0 0 1 0 0 0 0 1")),
     texture.checkerboard(),
     texture.checkerboard(color0=(0.8, 0.2, 0.1), color1=(0.1, 0.3, 0.7), to_uv=Transform("scale 3 5 1", "rotate z 30")),
     texture.checkerboard(color0=0.9, color1=0.1, to_uv=Transform("translate 0.3 0.1 0", "scale 4")),
-    texture.checkerboard(color0=texture.bitmap(filename="paint.png"), color1=0.1, to_uv=Transform("scale 4")),
 ]
 ATTRIBUTES = [bsdf.twosided(bsdf.diffuse(reflectance=texture.mesh_attribute(name="vertex_color"))),
               bsdf.twosided(bsdf.diffuse(reflectance=texture.mesh_attribute(name="face_color", scale=0.6))),
@@ -92,7 +95,7 @@ LIGHTS = [
     (shape.disk(emitter.area(radiance=SLIDE), to_world=Transform("scale 1.4 0.7 1", "rotate x 100", "translate 0 3 0")),),
     (shape.cylinder(emitter.area(radiance=SLIDE), p0=Point(-1, 2.5, 1), p1=Point(1, 2.7, 1), radius=0.2),),
     (shape.cylinder(emitter.area(radiance=3.0), p0=Point(-1, 2.5, 1), p1=Point(1, 2.7, 1), radius=0.8, flip_normals=True),),
-    (shape.cube(emitter.area(radiance=SLIDE), to_world=Transform("scale 0.4", "rotate 1 1 0 40", "translate 0 2.6 1")),),
+    (shape.cube(emitter.area(radiance=SLIDE), to_world=Transform("scale 0.4", "rotate 0.6 0.8 0 40", "translate 0 2.6 1")),),
     (shape.obj(emitter.area(radiance=SLIDE), filename="cloth.obj", face_normals=True, to_world=Transform("rotate x 100", "translate 0 2.6 -1")),),
     (shape.rectangle(emitter.area(radiance=3.0), bsdf.diffuse(reflectance=0.6), to_world=Transform("rotate x 70", "translate 0.4 3 -1")),),
     (emitter.constant(radiance=1.0),), (emitter.constant(radiance=(0.3, 0.5, 0.9)),), (emitter.constant(),),
@@ -150,7 +153,7 @@ INTEGRATORS = [
     integrator.path(max_depth=4, hide_emitters=True), integrator.direct(), integrator.direct(hide_emitters=True), integrator.direct(shading_samples=4),
     integrator.direct(emitter_samples=4, bsdf_samples=0), integrator.direct(emitter_samples=0, bsdf_samples=4), integrator.direct(emitter_samples=2, bsdf_samples=1),
     integrator.volpath(max_depth=4), integrator.volpathmis(max_depth=4), integrator.volpath(max_depth=4, rr_depth=2, hide_emitters=True),
-    integrator.prb(max_depth=4), integrator.prb_basic(), integrator.prbvolpath(max_depth=4), integrator.ptracer(max_depth=5),
+    integrator.prb(max_depth=4), integrator.prb_basic(), integrator.prbvolpath(max_depth=4),
     integrator.aov(aovs=LAYERS), integrator.aov(integrator.path(max_depth=4), aovs=LAYERS), integrator.aov(integrator.direct(), aovs="x:uv,y:duv_dx,z:duv_dy"),
     integrator.moment(integrator.path(max_depth=4)), integrator.moment(integrator.aov(integrator.direct(), aovs="d:depth")),
 ]
@@ -170,34 +173,46 @@ EMISSION = [Spectrum("2"), Spectrum("400:1, 500:3, 600:2, 700:4"), Spectrum(file
             spectrum.rawconstant(value=2.0), spectrum.srgb(color=(0.3, 0.9, 0.2))]
 
 CLEAR_BALL = {"center": Point(0, 1, 0.3), "radius": 0.9}
-FOG = {"albedo": 0.0, "name": "interior"}
 MEDIA = [
     shape.sphere(bsdf.null(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.3, 0.8, 1.5)), **CLEAR_BALL),
     shape.sphere(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.3, 0.8, 1.5), scale=0.5), **CLEAR_BALL),
     shape.sphere(bsdf.roughdielectric(alpha=0.2), interior=medium.homogeneous(albedo=0.0, sigma_t=0.8), **CLEAR_BALL),
-    shape.cube(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=0.8), to_world=Transform("scale 0.7", "rotate 1 1 0 40", "translate 0 1.2 0")),
+    shape.cube(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=0.8), to_world=Transform("scale 0.7", "rotate 0.6 0.8 0 40", "translate 0 1.2 0")),
 ]
 
 
-def old(text):
-    return Xml(text)
-
+# Ways to write the same.
+BALL = '<point name="center" x="0" y="1" z="0"/>'
+FORMS = {
+    "matrix of 9 numbers": '<shape type="cube"><transform name="to_world"><matrix value="0.6 0.2 0  0 0.7 0.1  0.3 0 0.5"/><translate y="1.2"/></transform></shape>',
+    "values of vectors": '<shape type="sphere"><point name="center" value="0.2, 1.1, 0.1"/><transform name="to_world"><scale value="0.8 0.8 0.8"/>'
+                         '<translate value="0.1, 0.2, 0.3"/></transform></shape>',
+    "rotation by value": '<shape type="cube"><transform name="to_world"><scale value="0.6"/><rotate value="0.6, 0.8, 0" angle="40"/><translate y="1.2"/></transform></shape>',
+    "lookat of a shape": '<shape type="rectangle"><transform name="to_world"><lookat origin="0, 1, 0" target="1, 2, 6" up="0, 1, 0"/></transform></shape>',
+    "lookat without up": '<shape type="cube"><transform name="to_world"><scale value="0.6"/><lookat origin="0, 1, 0" target="1, 2, 6"/></transform></shape>',
+    "colour in hexadecimal": f'<shape type="sphere">{BALL}<bsdf type="diffuse"><rgb name="reflectance" value="#ff8040"/></bsdf></shape>',
+    "one number as colour": f'<shape type="sphere">{BALL}<bsdf type="diffuse"><rgb name="reflectance" value="0.3"/></bsdf></shape>',
+    "number as colour": f'<shape type="sphere">{BALL}<bsdf type="diffuse"><float name="reflectance" value="0.3"/></bsdf></shape>',
+    "whole numbers as real": f'<shape type="sphere">{BALL}<integer name="radius" value="1"/><bsdf type="roughconductor"><integer name="alpha" value="1"/></bsdf></shape>',
+    "defaults": f'<default name="r" value="0.7"/><shape type="sphere">{BALL}<float name="radius" value="$r"/></shape>',
+    "an alias": f'<bsdf type="diffuse" id="a"><rgb name="reflectance" value="0.7, 0.2, 0.1"/></bsdf><alias id="a" as="b"/><shape type="sphere">{BALL}<ref id="b"/></shape>',
+    "axes of another length": '<shape type="rectangle"><transform name="to_world"><rotate x="1" y="1" angle="40"/><translate y="1.2"/></transform></shape>',
+}
 
 # Files of 0.x: what stands among floor, lamp and sky, whose own names are those of both.
 OLD = {
-    "camelCase, lookAt": old('<shape type="sphere"><transform name="toWorld"><scale value="0.8"/><translate y="1"/></transform>'
+    "camelCase, lookAt": ('<shape type="sphere"><transform name="toWorld"><scale value="0.8"/><translate y="1"/></transform>'
                              '<boolean name="flipNormals" value="false"/><bsdf type="plastic"><rgb name="diffuseReflectance" value="0.6, 0.2, 0.1"/>'
                              '<float name="intIOR" value="1.7"/><string name="extIOR" value="water"/></bsdf></shape>'),
-    "diffuseReflectance of diffuse": old('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="diffuse">'
+    "diffuseReflectance of diffuse": ('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="diffuse">'
                                          '<rgb name="diffuseReflectance" value="0.6, 0.2, 0.1"/></bsdf></shape>'),
-    "uscale, voffset": old('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="diffuse"><texture name="reflectance" type="bitmap">'
+    "uscale, voffset": ('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="diffuse"><texture name="reflectance" type="bitmap">'
                            '<string name="filename" value="paint.png"/><float name="uscale" value="3"/><float name="vscale" value="2"/>'
                            '<float name="voffset" value="0.3"/><string name="wrapMode" value="mirror"/><string name="filterType" value="nearest"/></texture></bsdf></shape>'),
-    "alphaU": old('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="roughconductor"><float name="alphaU" value="0.1"/>'
+    "alphaU": ('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="roughconductor"><float name="alphaU" value="0.1"/>'
                   '<float name="alphaV" value="0.4"/><string name="material" value="Au"/></bsdf></shape>'),
-    "rotate about a long axis": old('<shape type="cube"><transform name="toWorld"><scale value="0.6"/><rotate x="1" y="1" angle="40"/><translate y="1.2"/></transform></shape>'),
-    "phong": old('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="phong"/></shape>'),
-    "ward": old('<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="ward"/></shape>'),
+    "phong": '<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="phong"/></shape>',
+    "ward": '<shape type="sphere"><point name="center" x="0" y="1" z="0"/><bsdf type="ward"/></shape>',
 }
 
 
@@ -214,6 +229,13 @@ def cases():
     for part, entries in (("sensor", SENSORS), ("integrator", INTEGRATORS)):
         for entry in entries:
             yield Case(part, repr(entry), balls_and_card(bsdf.twosided(bsdf.roughplastic(diffuse_reflectance=texture.bitmap(filename="paint.png"), alpha=0.2))), parts={part: entry})
+    # Light that finds the camera finds few of the pixels behind glossy things, where no test of means holds.
+    yield Case("integrator", "ptracer(max_depth=5)", lit(LAMP), parts={"integrator": integrator.ptracer(max_depth=5)})
+    for axis in ("x", "y", "diagonal", "smaller", "larger"):
+        yield Case("sensor", f"fov_axis {axis} of a tall film", lit(LAMP), parts={"sensor": sensor.perspective(fov=40.0, fov_axis=axis), "film": film.hdrfilm(width=32, height=48)})
+    yield Case("sensor", "focal_length, tall, principal point, crop", lit(LAMP), parts={
+        "sensor": sensor.perspective(focal_length="60mm", principal_point_offset_x=0.1, principal_point_offset_y=0.2),
+        "film": film.hdrfilm(width=32, height=48, crop_width=16, crop_height=32, crop_offset_x=8, crop_offset_y=16)})
     # Samples beyond the edges are what decides whether both weigh the same places there.
     for entry in FILTERS:
         yield Case("filter", repr(entry), lit(LAMP), parts={"film": film.hdrfilm(entry, sample_border=True)})
@@ -222,5 +244,8 @@ def cases():
     yield from of("spectrum", balls_and_card, SPECTRA)
     yield from of("spectrum", lambda r: lit(shape.rectangle(emitter.area(radiance=r), to_world=Transform("rotate x 90", "translate 0.4 3 0.5"))), EMISSION)
     yield from of("medium", shaped, MEDIA, parts={"integrator": integrator.volpath(max_depth=8)})
-    for name, entry in OLD.items():
-        yield Case("0.x", name, shaped(entry), parts={"version": "0.6.0"})
+    yield from of("medium", shaped, MEDIA[:2], parts={"integrator": integrator.volpathmis(max_depth=8)})
+    for name, text in FORMS.items():
+        yield Case("form", name, shaped(Xml(text)))
+    for name, text in OLD.items():
+        yield Case("0.x", name, shaped(Xml(text)), parts={"version": "0.6.0"})

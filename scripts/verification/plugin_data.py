@@ -11,8 +11,7 @@ GRID = 10  # vertices a side of the meshes
 def waves(width, height, channels, seed, low=0.05, high=0.95):
     """Smooth patterns of period one, none of them symmetric."""
     random = np.random.default_rng(seed)
-    y, x = np.mgrid[0:height, 0:width] / (height, width, )[0] if width == height else np.meshgrid(
-        np.arange(height) / height, np.arange(width) / width, indexing="ij")
+    y, x = np.meshgrid(np.arange(height) / height, np.arange(width) / width, indexing="ij")
     out = np.zeros((height, width, channels))
     for channel in range(channels):
         for _ in range(4):
@@ -56,9 +55,8 @@ def write_ply(path, positions, normals, uvs, triangles, binary=False):
     """With a colour and a number at each vertex and each face."""
     columns = ["x", "y", "z"] + (["nx", "ny", "nz"] if normals is not None else []) + ["u", "v", "r", "g", "b", "shine_x"]
     random = np.random.default_rng(5)
-    parts = [positions] + ([normals] if normals is not None else []) + [uvs, random.uniform(0.1, 0.9, (len(positions), 3)),
-                                                                        random.uniform(0.1, 0.6, (len(positions), 1))]
-    vertices = np.hstack(parts).astype("<f4")
+    attributes = [random.uniform(0.1, 0.9, (len(positions), 3)), random.uniform(0.1, 0.6, (len(positions), 1))]
+    vertices = np.hstack([positions] + ([normals] if normals is not None else []) + [uvs] + attributes).astype("<f4")
     faces = random.uniform(0.1, 0.9, (len(triangles), 4)).astype("<f4")
     head = ["ply", f"format {'binary_little_endian' if binary else 'ascii'} 1.0", f"element vertex {len(vertices)}"]
     head += [f"property float {c}" for c in columns]
@@ -86,6 +84,15 @@ def write_serialized(path, meshes):
     path.write_bytes(out + b"".join(struct.pack("<Q", o) for o in offsets) + struct.pack("<I", len(offsets)))
 
 
+def write_bmp_and_tga(path, pixels):
+    """Rows of a multiple of four bytes, from below, blue first."""
+    height, width, _ = pixels.shape
+    body = pixels[::-1, :, ::-1].tobytes()
+    header = struct.pack("<IiiHHIIiiII", 40, width, height, 1, 24, 0, len(body), 2835, 2835, 0, 0)
+    path.with_suffix(".bmp").write_bytes(b"BM" + struct.pack("<IHHI", 54 + len(body), 0, 0, 54) + header + body)
+    path.with_suffix(".tga").write_bytes(struct.pack("<BBBHHBHHHHBB", 0, 0, 2, 0, 0, 0, 0, 0, width, height, 24, 0) + body + bytes(8) + b"TRUEVISION-XFILE.\0")
+
+
 def write_all(mi, folder):
     folder.mkdir(parents=True, exist_ok=True)
 
@@ -101,8 +108,18 @@ def write_all(mi, folder):
     picture("wide_heights.png", waves(24, 12, 1, 3))
     picture("normals.png", normals_of(waves(16, 16, 1, 3)[..., 0], 2.5))
     picture("paint.exr", waves(9, 7, 3, 4), eight_bits=False)
+    paint = waves(12, 12, 3, 8)
+    for name in ("form.png", "form.jpg", "form.ppm"):
+        picture(name, paint)
+    write_bmp_and_tga(folder / "form", np.round(paint * 255).astype(np.uint8))
+    for name in ("form.hdr", "form.pfm"):
+        picture(name, paint, eight_bits=False)
+    picture("alpha.png", waves(12, 12, 4, 8))
+    mi.Bitmap((paint * 65535).astype(np.uint16)).write(str(folder / "deep.png"))
+    mi.Bitmap(paint.astype(np.float16)).write(str(folder / "half.exr"))
+    mi.Bitmap(paint[..., :1].astype(np.float32)).write(str(folder / "luminance.exr"))
     picture("slide.png", waves(16, 10, 3, 6))
-    y, x = np.mgrid[0:32, 0:64] / (32.0, )
+    y, x = np.mgrid[0:32, 0:64] / 32.0
     sky = waves(64, 32, 3, 7, 0.1, 0.5) + (2.0 * np.exp(-((x - 0.6) ** 2 + (y - 0.3) ** 2) * 12.0))[..., None] * (1.0, 0.9, 0.7)
     picture("sky.exr", sky, eight_bits=False)
     positions, normals, uvs, triangles = mesh()

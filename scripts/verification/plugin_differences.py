@@ -1,8 +1,8 @@
 """Cases of plugins.py in closed form: named materials side by side, and where Mitsuba is known to differ, with the ratio derived."""
 
-from math import pi
+from math import cos, hypot, pi, radians, sin, sqrt
 
-from plugin_scenes import Case, Point, Transform, Vector, bsdf, emitter, integrator, sensor, shape, texture
+from plugin_scenes import Case, Point, Transform, Vector, bsdf, emitter, integrator, sensor, shape
 
 CONDUCTORS = """Ag Al AlAs AlAs_palik AlSb AlSb_palik Au Be Be_palik Cr CsI CsI_palik Cu Cu2O Cu2O_palik CuO CuO_palik Cu_palik Hg HgTe HgTe_palik
     Hg_palik Ir Ir_palik K K_palik Li Li_palik MgO MgO_palik Mo Mo_palik Na_palik Nb Nb_palik Ni_palik Rh Rh_palik Se Se-e Se-e_palik Se_palik SiC
@@ -43,6 +43,14 @@ def blended_mirror(weight, reflectance):
     return (weight * reflectance + mirror) / (weight * reflectance + 1 - weight)
 
 
+def turned_about_a_long_axis(degrees):
+    """Cosine of the light from the front on a cube's face towards x that is turned about (1, 1, 0) and then to the front: Mitsuba's over ours.
+    Such a matrix M shears. Normals of faces are M y x M z; Mitsuba takes M for the transpose of its own inverse, and M x for the normal."""
+    c, s = cos(radians(degrees)), sin(radians(degrees))
+    theirs, ours = (1.0, 1 - c, -s), (c + 1 - c * c, 1 - c, -(2 - c) * s)
+    return theirs[0] / hypot(*theirs) * hypot(*ours) / ours[0]
+
+
 VEIL = shape.rectangle(bsdf.mask(bsdf.diffuse(reflectance=0.0), opacity=0.5), to_world=Transform("scale 4", "rotate y 90", "translate 2 0 0"))
 COVER = shape.rectangle(bsdf.twosided(bsdf.diffuse(reflectance=0.0)), to_world=Transform("scale 0.2", "translate -1.5 0 3.9968"))
 SHADOWS = "masks cast whole shadows under lights that no path finds"
@@ -58,6 +66,9 @@ EXPECTED = [
     (0.5, "paths through nothing but masks count as background, with what the mask sent back", LIMITLESS,
      facing(bsdf.mask(MATT, opacity=0.5), behind_camera(6, 1, 5.0))),
     (None, "", integrator.volpath(), facing(bsdf.mask(MATT, opacity=0.5), behind_camera(6, 1, 5.0))),
+    (turned_about_a_long_axis(40), "a rotation about an axis that is not of length one is taken for its own inverse's transpose", LAMP_ONLY,
+     (shape.cube(MATT, to_world=Transform("rotate 1 1 0 40", "rotate y -90", "scale 4", "translate 0 0 -8")),
+      emitter.directional(direction=Vector(0, 0, -1), irradiance=3.0))),
     # The vertex normals are turned by 60 degrees, and their cosine takes the place of the face's.
     (0.5, "light samples of meshes take the cosine of the vertex normal", LAMP_ONLY,
      facing(MATT, shape.obj(emitter.area(radiance=1e5), filename="tilted.obj", to_world=Transform("scale 0.2", "rotate y 180", "translate 0 0 60")))),
@@ -72,5 +83,10 @@ def cases():
     yield Case("names", "rough conductors", side_by_side([bsdf.roughconductor(material=m, alpha=0.3) for m in CONDUCTORS]), parts={"sensor": FACING})
     yield Case("names", "int_ior", side_by_side([bsdf.dielectric(int_ior=m, specular_transmittance=0.0) for m in DIELECTRICS]), parts={"sensor": FACING})
     yield Case("names", "ext_ior", side_by_side([bsdf.plastic(ext_ior=m, diffuse_reflectance=(0.2, 0.5, 0.8)) for m in DIELECTRICS]), parts={"sensor": FACING})
+    # Turned by a rotation, z has the cosine cos(40); by Mitsuba's matrix it is (s, -s, c), whose length is not one.
+    front = emitter.directional(direction=Vector(0, 0, -1), irradiance=3.0)
+    turned = shape.rectangle(MATT, to_world=Transform("rotate 1 1 0 40", "scale 6"))
+    yield Case("closed form", "0.x, rotation about a long axis", (turned, front), ratio=1 / sqrt(1 + sin(radians(40)) ** 2),
+               reason="0.x made axes one long", parts={"sensor": FACING, "version": "0.6.0"})
     for ratio, reason, tracer, objects in EXPECTED:
-        yield Case("closed form", f"{tracer}: " + ", ".join(map(repr, objects)), objects, ratio=ratio, reason=reason, parts={"sensor": FACING, "integrator": tracer})
+        yield Case("closed form", f"{objects[0].children[0]} under {objects[-1].plugin}, {tracer}", objects, ratio=ratio, reason=reason, parts={"sensor": FACING, "integrator": tracer})

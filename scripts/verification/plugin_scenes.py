@@ -145,7 +145,7 @@ class Case:
         film_node = parts["film"]
         if not any(isinstance(child, Node) and child.kind == "rfilter" for child in film_node.children):
             film_node = Node("film", film_node.plugin, *film_node.children, rfilter.box(), **film_node.properties)
-        size = {"width": WIDTH, "height": HEIGHT, **film_node.properties}
+        size = {"width": WIDTH, "height": HEIGHT, "component_format": "float32", **film_node.properties}
         film_node = Node("film", film_node.plugin, *film_node.children, **size)
         camera = Node("sensor", camera.plugin, *camera.children, film_node, sampler.independent(sample_count=self.spp), **properties)
         objects = (parts["integrator"], camera, *self.objects)

@@ -55,6 +55,7 @@ TEST(MitsubaReader, DirectIntegratorRefusesDepthAndIsTwoEdgesDeep) {
         R"(<integrator type="direct"><integer name="emitter_samples" value="4"/><boolean name="hide_emitters" value="true"/></integrator>)");
     EXPECT_EQ(scene.integrator.max_depth, 2);
     EXPECT_TRUE(scene.integrator.hide_emitters);
+    EXPECT_FALSE(scene.integrator.environment_covers);
     EXPECT_TRUE(has_text(
         folder.element_faults(R"(<integrator type="direct"><integer name="max_depth" value="3"/></integrator>)"),
         "unknown property `max_depth`"));
