@@ -94,6 +94,8 @@ def tail(degrees):
 def p_of_means(ours, theirs, samples):
     """The least p of Welch's tests of every mean, where it is, and how many tests that are. `samples` of ours are in each mean: what
     the picture's mean as one sample more would make of it is no difference, as rare samples need not have come yet."""
+    if not (np.isfinite(ours).all() and np.isfinite(theirs).all()):
+        return 0.0, "not finite", 1
     reference = theirs.mean(axis=0)
     rounding = 1e-5 * np.abs(reference) + np.abs(theirs).mean(axis=tuple(range(theirs.ndim - 1))) / samples
     parts = [np.maximum(a.var(axis=0, ddof=1) / len(a), 1e-30) for a in (ours, theirs)]
