@@ -72,6 +72,10 @@ EXPECTED = [
     # The vertex normals are turned by 60 degrees, and their cosine takes the place of the face's.
     (0.5, "light samples of meshes take the cosine of the vertex normal", LAMP_ONLY,
      facing(MATT, shape.obj(emitter.area(radiance=1e5), filename="tilted.obj", to_world=Transform("scale 0.2", "rotate y 180", "translate 0 0 60")))),
+    # Two equal quadrilaterals, which share their texture coordinates: Mitsuba's light samples find one of them.
+    (0.5, "light samples of a texture that shows in several places find one of them", LAMP_ONLY,
+     facing(MATT, shape.obj(emitter.area(radiance=texture.bitmap(filename="slide.png")), filename="twice.obj",
+                            to_world=Transform("scale 2", "rotate y 180", "translate 0 0 60")))),
     # Mitsuba's light samples of textured cylinders that do not lie along z are not where their texture says; what finds them by chance is right.
     (None, "", integrator.direct(emitter_samples=0, bsdf_samples=4),
      facing(MATT, shape.cylinder(emitter.area(radiance=texture.bitmap(filename="slide.png")), p0=Point(-2, -1, 5), p1=Point(2, 1, 6), radius=1.5))),

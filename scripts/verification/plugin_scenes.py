@@ -135,6 +135,7 @@ class Case:
     ratio: Optional[float] = None
     reason: str = ""
     spp: int = 48
+    rounding: float = 1e-5  # by how much, relatively, values may differ that have no noise
     parts: dict = field(default_factory=dict)  # parts of the scene in place of the usual ones
 
     def xml(self):

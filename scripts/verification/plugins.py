@@ -91,15 +91,15 @@ def tail(degrees):
     return grid, sums / sums[0]
 
 
-def p_of_means(ours, theirs, samples):
+def p_of_means(ours, theirs, samples, rounding):
     """The least p of Welch's tests of every mean, where it is, and how many tests that are. `samples` of ours are in each mean: what
     the picture's mean as one sample more would make of it is no difference, as rare samples need not have come yet."""
     if not (np.isfinite(ours).all() and np.isfinite(theirs).all()):
         return 0.0, "not finite", 1
     reference = theirs.mean(axis=0)
-    rounding = 1e-5 * np.abs(reference) + np.abs(theirs).mean(axis=tuple(range(theirs.ndim - 1))) / samples
+    slack = rounding * np.abs(reference) + np.abs(theirs).mean(axis=tuple(range(theirs.ndim - 1))) / samples
     parts = [np.maximum(a.var(axis=0, ddof=1) / len(a), 1e-30) for a in (ours, theirs)]
-    t = np.maximum(np.abs(ours.mean(axis=0) - reference) - rounding, 0.0) / np.sqrt(parts[0] + parts[1])
+    t = np.maximum(np.abs(ours.mean(axis=0) - reference) - slack, 0.0) / np.sqrt(parts[0] + parts[1])
     degrees = (parts[0] + parts[1]) ** 2 / (parts[0] ** 2 / (len(ours) - 1) + parts[1] ** 2 / (len(theirs) - 1))
     degrees = np.floor(degrees).astype(int)
     p = np.ones_like(t)
@@ -131,9 +131,9 @@ class Comparison:
         height, width = (n // BLOCK * BLOCK for n in ours.shape[1:3])
         samples = case.spp * len(ours)
         self.tests = [
-            ("pixel", *p_of_means(ours, theirs, samples)),
-            ("square", *p_of_means(*(blocks(a[:, :height, :width], BLOCK) for a in (ours, theirs)), samples * BLOCK**2)),
-            ("mean", *p_of_means(ours.mean(axis=(1, 2)), theirs.mean(axis=(1, 2)), samples * ours[0, ..., 0].size))]
+            ("pixel", *p_of_means(ours, theirs, samples, case.rounding)),
+            ("square", *p_of_means(*(blocks(a[:, :height, :width], BLOCK) for a in (ours, theirs)), samples * BLOCK**2, case.rounding)),
+            ("mean", *p_of_means(ours.mean(axis=(1, 2)), theirs.mean(axis=(1, 2)), samples * ours[0, ..., 0].size, case.rounding))]
         self.ratio, self.error = self.ratio_of_means()
 
     def stack(self, which):
