@@ -69,7 +69,10 @@ class Mitsuba:
         try:
             yield
         except (RuntimeError, TypeError) as error:
-            raise NotLoaded(str(error).strip().splitlines()[-1]) from error
+            first = error
+            while first.__cause__ is not None:
+                first = first.__cause__
+            raise NotLoaded(str(first).strip().splitlines()[-1]) from error
 
     def render(self, seed):
         with self.refusals():
