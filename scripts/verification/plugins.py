@@ -5,7 +5,7 @@ usage: plugins.py [--list] [TEXT...]      default: all cases; otherwise those wh
 Pixels, squares of pixels and the whole picture are compared by Welch's test over rounds of other seeds; the threshold is Sidak's
 for all tests of all cases chosen. The means must agree within half a percent besides, and are measured until their standard error
 is a third of that. Where Mitsuba is known to differ, the ratio of the means is compared with the one derived for that. Prints a
-line a case; those that Mitsuba cannot load are named. Fails if any case differs.
+line a case; those that Mitsuba cannot load are named. Fails if any case differs. No case is begun after WAVELOBE_PLUGINS_SECONDS (3600).
 """
 
 import contextlib
@@ -172,9 +172,10 @@ class Comparison:
         return ", ".join(found)
 
 
-def row(group, tests, differing, seconds):
-    return {"section": "Light transport", "claim": f"{group} plugins against Mitsuba: cases that differ", "unit": "cases", "measured": len(differing), "bound": 0,
-            "worst": differing[0] if differing else "", "holds": not differing, "samples": tests, "seconds": seconds, "test": "plugins.py"}
+def row(group, cases, differing, seconds):
+    return {"section": "Light transport", "claim": f"{group} plugins against Mitsuba: cases that differ", "unit": "cases",
+            "measured": len(differing), "bound": 0, "worst": differing[0] if differing else "", "holds": not differing,
+            "samples": cases, "seconds": seconds, "test": "plugins.py"}
 
 
 def main():
@@ -208,7 +209,8 @@ def main():
             groups.setdefault(case.group, []).append((title, True, time.time()))
             continue
         verdict = result.verdict(len(chosen))
-        said = "differs: " + verdict if verdict else "agrees" if case.ratio is None else f"expected difference ({case.reason}; derived {case.ratio:.4f})"
+        agreement = "agrees" if case.ratio is None else f"expected difference ({case.reason}; derived {case.ratio:.4f})"
+        said = f"differs: {verdict}" if verdict else agreement
         print(f"{title}: {said}; ratio {result.ratio:.4f}, standard error {result.error:.4f}", flush=True)
         groups.setdefault(case.group, []).append((title, bool(verdict), time.time()))
     rows = [row(group, len(found), [t for t, bad, _ in found if bad], found[-1][2] - start[group]) for group, found in groups.items()]
