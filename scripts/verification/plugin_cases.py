@@ -120,7 +120,8 @@ LIGHTS = [
     (emitter.projector(to_world=DOWN, irradiance=(3.0, 2.0, 1.0), fov=30.0),),
     (emitter.projector(to_world=DOWN, irradiance=texture.bitmap(filename="slide.png", raw=True, filter_type="nearest", to_uv=Transform("scale 2 1 1")), fov=40.0),),
     *((emitter.point(position=Point(1, 3, 2), intensity=5.0, sampling_weight=w), emitter.spot(to_world=DOWN, sampling_weight=w),
-       emitter.constant(radiance=0.2, sampling_weight=w)) for w in (0.0, 3.0)),
+       emitter.constant(radiance=0.2)) for w in (0.0, 3.0)),
+    (emitter.point(position=Point(1, 3, 2), intensity=5.0), emitter.constant(radiance=0.2, sampling_weight=0.0)),
     (shape.disk(emitter.area(radiance=3.0, sampling_weight=0.0), to_world=Transform("scale 1.5", "rotate x 90", "translate 0 3 0")), emitter.constant(radiance=0.2)),
     (emitter.point(position=Point(1, 3, 2), intensity=5.0), emitter.directional(direction=Vector(0.5, -1, -0.2)), emitter.constant(radiance=0.2)),
 ]
@@ -176,8 +177,8 @@ EMISSION = [Spectrum("2"), Spectrum("400:1, 500:3, 600:2, 700:4"), Spectrum(file
 
 CLEAR_BALL = {"center": Point(0, 1, 0.3), "radius": 0.9}
 MEDIA = [
-    shape.sphere(bsdf.null(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.3, 0.8, 1.5)), **CLEAR_BALL),
-    shape.sphere(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.3, 0.8, 1.5), scale=0.5), **CLEAR_BALL),
+    shape.sphere(bsdf.null(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.2, 0.5, 1.0), scale=1.5), **CLEAR_BALL),
+    shape.sphere(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=(0.2, 0.5, 1.0), scale=0.7), **CLEAR_BALL),
     shape.sphere(bsdf.roughdielectric(alpha=0.2), interior=medium.homogeneous(albedo=0.0, sigma_t=0.8), **CLEAR_BALL),
     shape.cube(bsdf.dielectric(), interior=medium.homogeneous(albedo=0.0, sigma_t=0.8), to_world=Transform("scale 0.7", "rotate 0.6 0.8 0 40", "translate 0 1.2 0")),
 ]
