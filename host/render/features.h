@@ -64,6 +64,7 @@ struct FeatureSet {
     bool ggx = false;
     bool beckmann = false;
     bool hide_emitters = false;
+    bool environment_covers = true;
     bool orthographic = false;
     bool thin_lens = false;
     bool signed_filter = false;  // samples have weights, negative ones among them

@@ -98,6 +98,7 @@ private:
         f.thin_lens = !f.orthographic && scene_.camera.aperture_radius > 0.0F;
         f.signed_filter = scene_.film.filter.is_signed();
         f.hide_emitters = scene_.integrator.hide_emitters;
+        f.environment_covers = scene_.integrator.environment_covers && !f.hide_emitters;
         if (!f.masks && !f.veiled_emitters) out_.opacities = {};
         f.uvs = !out_.uvs.empty() && (f.textures || f.anisotropy || f.normal_maps || f.coat_normals || f.vertex_opacity || f.layers != 0);
         if (f.uvs) return;

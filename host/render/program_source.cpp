@@ -63,6 +63,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("ESTIMATOR", static_cast<long>(f.estimator));
     out.define("INDEPENDENT_SAMPLES", f.independent_samples);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    if (has_bit(f.layers, LAYER_COVERAGE)) out.define("ENVIRONMENT_COVERS", f.environment_covers);
     out.define("HAS_MASKS", f.masks);
     out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
     out.define("HAS_MEDIA", f.media);

@@ -64,6 +64,7 @@ struct Integrator {
     int max_depth = -1;  // path edges seen from the camera; -1: unlimited, 1: emitters alone
     int rr_depth = 5;    // Russian roulette from this depth on
     bool hide_emitters = false;
+    bool environment_covers = true;  // where nothing but the environment is seen, the picture is covered
     bool radiance = true;  // false: the channels are all there is, the colours stay black
     std::vector<PictureChannel> channels{};
 };

@@ -31,7 +31,7 @@ INLINE uint layer_values(Block block, const SceneView *scene, const TracedPath *
     SCENE_LAYERS(LAYER_VALUES)
 #undef LAYER_VALUES
     for (uint c = 0u; c < count; c++) values[c] = SELECT(seen, values[c], ZERO);
-#if HAS_LAYER_COVERAGE && HAS_ENVIRONMENT && !HIDE_EMITTERS
+#if HAS_LAYER_COVERAGE && HAS_ENVIRONMENT && ENVIRONMENT_COVERS
     values[0] = ONE; // the first of the list: the environment is seen as well
 #endif
     return count;

@@ -55,6 +55,7 @@ TEST(MitsubaReader, DirectIntegratorRefusesDepthAndIsTwoEdgesDeep) {
         R"(<integrator type="direct"><integer name="emitter_samples" value="4"/><boolean name="hide_emitters" value="true"/></integrator>)");
     EXPECT_EQ(scene.integrator.max_depth, 2);
     EXPECT_TRUE(scene.integrator.hide_emitters);
+    EXPECT_FALSE(scene.integrator.environment_covers);
     EXPECT_TRUE(has_text(
         folder.element_faults(R"(<integrator type="direct"><integer name="max_depth" value="3"/></integrator>)"),
         "unknown property `max_depth`"));
@@ -217,6 +218,20 @@ TEST(MitsubaReader, AreaEmitterBelongsToItsShape) {
     EXPECT_TRUE(scene.emitters.empty());
     // Without a BSDF a light reflects nothing.
     EXPECT_EQ(std::get<Diffuse>(scene.materials.at(0).model).reflectance.value, Rgb(0.0F));
+}
+
+TEST(MitsubaReader, LightsThatAreNeverSampledShineOnlyWhereTheyAreMet) {
+    const auto lights = [](const char* weight) {
+        const std::string inner = std::string("<float name=\"sampling_weight\" value=\"") + weight + "\"/></emitter>";
+        return SceneFolder().elements(R"(<emitter type="point">)" + inner + R"(<emitter type="directional">)" + inner +
+                                      R"(<emitter type="spot">)" + inner + R"(<emitter type="projector">)" + inner +
+                                      R"(<emitter type="constant">)" + inner + R"(<shape type="disk"><emitter type="area">)" + inner + "</shape>");
+    };
+    EXPECT_EQ(lights("3").emitters.size(), 5U);
+    EXPECT_TRUE(lights("3").warnings.empty());
+    ASSERT_EQ(lights("0").emitters.size(), 1U);
+    EXPECT_TRUE(std::holds_alternative<ConstantEmitter>(lights("0").emitters[0]));
+    EXPECT_TRUE(lights("0").shapes.at(0).emitter.has_value());
 }
 
 TEST(MitsubaReader, ShapesShareAnAreaEmitterThatStandsBesideThem) {

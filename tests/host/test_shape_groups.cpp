@@ -30,6 +30,20 @@ TEST(ShapeGroups, MayFollowTheirInstances) {
     EXPECT_EQ(scene.instances.size(), 1U);
 }
 
+TEST(ShapeGroups, MergedShapesAreTheShapesThemselves) {
+    const Scene scene = SceneFolder().elements(R"(<shape type="merge"><shape type="cube" id="a"/>
+            <shape type="merge"><shape type="disk" id="b"><emitter type="area"/></shape></shape></shape>
+        <shape type="shapegroup" id="g"><shape type="merge"><shape type="cube"/><shape type="sphere"/></shape></shape>
+        <shape type="instance"><ref id="g"/></shape>)");
+    ASSERT_EQ(scene.shapes.size(), 2U);
+    EXPECT_EQ(scene.shapes[0].name, "a");
+    EXPECT_EQ(scene.shapes[1].name, "b");
+    EXPECT_TRUE(scene.shapes[1].emitter.has_value());
+    ASSERT_EQ(scene.groups.size(), 1U);
+    EXPECT_EQ(scene.groups[0].shapes.size(), 2U);
+    EXPECT_TRUE(has_text(SceneFolder().element_faults(R"(<shape type="merge"><bsdf type="diffuse"/></shape>)"), "bsdf"));
+}
+
 TEST(ShapeGroups, Faults) {
     const auto faults = [](const std::string& xml) { return SceneFolder().element_faults(xml); };
     EXPECT_TRUE(has_text(faults(R"(<shape type="instance"/>)"), "holds 0 shapes; expected one shapegroup"));

@@ -119,6 +119,24 @@ TEST(Layers, OfASphere) {
     EXPECT_LT(hits, 200U);
 }
 
+// `path` counts an environment as covered, `direct` what is there alone.
+TEST(Layers, CoverageUnderAnEnvironment) {
+    for (const bool covers : {true, false}) {
+        for (const bool hidden : {true, false}) {
+            Scene scene = empty_scene(8);
+            look_at(scene, {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90.0F);
+            add_quad(scene, {4, -4, 2}, {-4, 0, 0}, {0, 8, 0}, add_diffuse(scene, {0.2F, 0.5F, 0.7F}));
+            scene.emitters.emplace_back(ConstantEmitter{Rgb{1}});
+            scene.integrator.environment_covers = covers;
+            scene.integrator.hide_emitters = hidden;
+            ask(scene, LayerKind::coverage, 1);
+            const Image image = render(scene, 4).image;
+            EXPECT_EQ(values(image, scene, LayerKind::coverage, 0)[8 * 4], 1.0F);
+            EXPECT_EQ(values(image, scene, LayerKind::coverage, 0)[8 * 4 + 7], covers && !hidden ? 1.0F : 0.0F);
+        }
+    }
+}
+
 TEST(Layers, MomentsOfTheLight) {
     Scene scene = wall_scene();
     scene.film.filter = {.kind = ReconstructionFilter::Kind::mitchell};

@@ -101,6 +101,7 @@ std::vector<std::string> medium_types();
 // The index of the group, which is read once; -1 where it is refused.
 int read_shape_group(Context& context, const Object& object);
 void read_instance(Context& context, const Object& object);
+void read_merged(Context& context, const Object& object);
 
 // ---- emitters.cpp -----------------------------------------------------------------------------------
 

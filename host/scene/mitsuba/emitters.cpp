@@ -11,11 +11,8 @@ namespace wavelobe::mitsuba {
 
 namespace {
 
-// How often a light is chosen does not change the picture, except for lights that are never chosen.
-void accept_sampling_weight(Query& query) {
-    const double weight = query.real("sampling_weight", 1.0, not_negative);
-    if (weight != 1.0) query.warn("`sampling_weight` is ignored");
-}
+// How often a light is sampled does not change the picture, except for lights that are never sampled nor met by chance.
+bool is_sampled(Query& query) { return query.real("sampling_weight", 1.0, not_negative) > 0.0; }
 
 Rgb emission(Query& query, const std::string& name) { return query.colour(name, 1.0, ColourUse::emission); }
 
@@ -150,11 +147,13 @@ void read_emitter(Context& context, const Object& object) {
         return query.fault("an area light needs a shape to shine from", "nest it in a <shape>");
     }
     std::optional<Emitter> emitter = plugin->read(query);
-    accept_sampling_weight(query);
+    const bool sampled = is_sampled(query);
     read_surrounding_medium(query);  // paths start at the camera
     query.finish();
     if (!context.attributes.empty()) query.fault("attributes are of meshes, and it has none", "use another texture");
-    if (emitter) context.scene.emitters.push_back(std::move(*emitter));
+    if (!emitter) return;
+    const bool surrounds = std::holds_alternative<ConstantEmitter>(*emitter) || std::holds_alternative<EnvironmentMap>(*emitter);
+    if (sampled || surrounds) context.scene.emitters.push_back(std::move(*emitter));
 }
 
 std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& object) {
@@ -170,7 +169,7 @@ std::optional<AreaEmitter> read_area_emitter(Context& context, const Object& obj
         query.accept({"to_world"});
     }
     AreaEmitter emitter{query.parameter("radiance", 1.0, ColourUse::emission)};
-    accept_sampling_weight(query);
+    is_sampled(query);
     read_surrounding_medium(query);
     query.finish();
     return emitter;

@@ -1,4 +1,4 @@
-// Shape groups, and the instances that place them.
+// Shape groups, the instances that place them, and shapes put together.
 #include "scene/mitsuba/query.h"
 
 namespace wavelobe::mitsuba {
@@ -22,6 +22,22 @@ bool may_be_instanced(Context& context, const Child& child) {
     return true;
 }
 
+// The shapes an object holds, those of nested `merge`s among them.
+std::vector<const Child*> held_shapes(Query& query) {
+    std::vector<const Child*> shapes;
+    for (const Child* child : query.children("shape")) {
+        if (child->object->type != "merge") {
+            shapes.push_back(child);
+            continue;
+        }
+        Query inner(query.context(), *child->object);
+        const std::vector<const Child*> merged = held_shapes(inner);
+        shapes.insert(shapes.end(), merged.begin(), merged.end());
+        inner.finish();
+    }
+    return shapes;
+}
+
 }  // namespace
 
 int read_shape_group(Context& context, const Object& object) {
@@ -31,7 +47,7 @@ int read_shape_group(Context& context, const Object& object) {
     ShapeGroup group;
     group.name = object.id;
     bool usable = !query.has_unresolved_children();
-    for (const Child* child : query.children("shape")) {
+    for (const Child* child : held_shapes(query)) {
         if (!may_be_instanced(context, *child)) {
             usable = false;
         } else if (std::optional<Shape> shape = build_shape(context, *child->object)) {
@@ -42,6 +58,13 @@ int read_shape_group(Context& context, const Object& object) {
     if (!usable) return -1;
     context.scene.groups.push_back(std::move(group));
     return context.groups[&object] = static_cast<int>(context.scene.groups.size()) - 1;
+}
+
+// Mitsuba makes one mesh of those of one material, to save memory; the picture is the same.
+void read_merged(Context& context, const Object& object) {
+    Query query(context, object);
+    for (const Child* child : held_shapes(query)) read_shape(context, *child->object);
+    query.finish();
 }
 
 void read_instance(Context& context, const Object& object) {

@@ -27,6 +27,7 @@ Integrator read_replayed(Query& query) {
     Integrator integrator;
     integrator.max_depth = static_cast<int>(query.integer("max_depth", 6, -1, int_max));
     integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 5, 1, int_max));
+    integrator.environment_covers = false;
     query.accept({"guiding", "guiding_proj", "guiding_rounds", "project_seed", "sppc", "sppi", "sppp"});
     return integrator;
 }
@@ -61,6 +62,7 @@ Integrator read_direct(Query& query) {
     if (emitter + bsdf == 0) query.fault("both sample counts are zero", "take at least one sample of one kind");
     Integrator integrator;
     integrator.max_depth = 2;
+    integrator.environment_covers = false;
     return integrator;
 }
 

@@ -184,11 +184,12 @@ struct Plugin {
     bool (*read)(Query&, Shape&);
     bool from_file = false;
 };
-constexpr std::array<Plugin, 10> plugins{{
+constexpr std::array<Plugin, 11> plugins{{
     {"cube", read_cube},
     {"cylinder", read_cylinder},
     {"disk", read_disk},
     {"instance", nullptr},  // instances.cpp
+    {"merge", nullptr},
     {"obj", read_obj, true},
     {"ply", read_ply, true},
     {"rectangle", read_rectangle},
@@ -245,6 +246,8 @@ void read_shape(Context& context, const Object& object) {
         read_shape_group(context, object);
     } else if (object.type == "instance") {
         read_instance(context, object);
+    } else if (object.type == "merge") {
+        read_merged(context, object);
     } else if (std::optional<Shape> shape = build_shape(context, object)) {
         context.scene.shapes.push_back(std::move(*shape));
     }
