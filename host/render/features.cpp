@@ -35,7 +35,7 @@ bool FeatureSet::has_lobe_class(std::uint32_t wanted) const {
     return false;
 }
 
-bool FeatureSet::glossy_receivers() const { return light_tree && has_lobe_class(LOBE_CLASS_GLOSSY); }
+bool FeatureSet::glossy_receivers() const { return light_tree() && has_lobe_class(LOBE_CLASS_GLOSSY); }
 
 bool FeatureSet::has_surface_lights() const { return has_reach(*this, Reach::SURFACE); }
 bool FeatureSet::has_environment() const { return has_reach(*this, Reach::ENVIRONMENT); }
@@ -89,7 +89,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(veiled_emitters, "veiled_emitters");
     add(media, "media");
     add(clear_boundaries, "clear_boundaries");
-    add(light_tree, "light_tree");
+    add(light_tree(), "light_tree");
     add(few_triangles, "few_triangles");
     return out;
 }
@@ -121,7 +121,7 @@ const char* stage_name(std::uint32_t stage) { return stage_list[stage].name; }
 
 std::size_t block_words(const FeatureSet& features, int block_slots) {
     const std::size_t stride = static_cast<std::size_t>(block_slots) + QUEUE_PADDING;
-    const std::size_t fields = RAY_FIELDS + (features.light_tree ? 1 : 0) + (features.glossy_receivers() ? 1 : 0) +
+    const std::size_t fields = RAY_FIELDS + (features.light_tree() ? 1 : 0) + (features.glossy_receivers() ? 1 : 0) +
                                (features.instances ? 1 : 0) + (features.media ? 1 : 0);
     const std::size_t traced = features.analytic ? fields : fields - 3;  // without the origin
     std::size_t queues = 0;

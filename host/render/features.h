@@ -77,13 +77,14 @@ struct FeatureSet {
     bool clear_boundaries = false; // some shapes part media and are not there otherwise
     Estimator estimator = Estimator::mis;
     bool independent_samples = false;
-    bool light_tree = false;   // several lights with a place: chosen by a tree
+    int placed_lights = 0;     // chosen by a tree; 0: there are not several with a place
     bool few_triangles = false;  // no hierarchy: every triangle is tested
     int bvh_stack = 64;          // entries of the traversal stack
     int walks = 1;               // rays that are traced in turn
 
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;
+    bool light_tree() const { return placed_lights > 0; }
     bool glossy_receivers() const;  // lobes have a say in which light is chosen
     bool has_environment() const;
 

@@ -3,16 +3,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "tables/alias_table.h"
 #include "tables/environment_table.h"
 #include "tables/light_power.h"
 
 namespace wavelobe {
 namespace {
-
-// From here on the light tree's smaller variance is worth its time: with two lights (veach-bidir) relMSE fell by 23 % and time
-// rose by 26 %, with five (glossy_plates) by 23 % and 20 %.
-constexpr std::size_t least_tree_lights = 5;
 
 Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -54,14 +49,14 @@ Affine affine(const glm::mat4& m) {
     return a;
 }
 
-void LightFlattener::add_light(const Light& light, double power) {
+void LightFlattener::add_light(const Light& light) {
     out_.lights.push_back(light);
     out_.features.light_kinds |= 1U << light.kind;
-    powers_.push_back(power);
+    ++count_;
 }
 
-void LightFlattener::add_placed_light(const Light& light, double power, const LightBounds& bounds) {
-    add_light(light, power);
+void LightFlattener::add_placed_light(const Light& light, const LightBounds& bounds) {
+    add_light(light);
     bounds_.push_back(bounds);
 }
 
@@ -107,7 +102,7 @@ void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const
     bounds.axis = glm::normalize(cross);
     bounds.emission = 0.5 * std::numbers::pi;
     bounds.intensity = area * radiance.mean;
-    add_placed_light(light, std::numbers::pi * area * radiance.mean, bounds);
+    add_placed_light(light, bounds);
 }
 
 void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
@@ -130,7 +125,7 @@ void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, s
     }
     bounds.emission = 0.5 * std::numbers::pi;
     bounds.intensity = area * seen * mean_luminance(emitter.radiance);
-    add_placed_light(light, area_power(emitter, area), bounds);
+    add_placed_light(light, bounds);
 }
 
 bool LightFlattener::has_place(const Emitter& emitter) {
@@ -145,60 +140,47 @@ void LightFlattener::add_unsampled(const AreaEmitter& emitter, std::size_t shape
 
 void LightFlattener::finish() {
     // The stages of lights want one.
-    if (powers_.empty() && !unsampled_.empty()) add(PointEmitter{glm::vec3(0.0F), Rgb(0.0F)}, 0.0);
+    if (out_.lights.empty() && !unsampled_.empty()) add(PointEmitter{glm::vec3(0.0F), Rgb(0.0F)});
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
-    if (bounds_.size() >= least_tree_lights) {
-        build_tree();
-    } else {
-        build_alias();
-    }
+    share_out();
+    if (bounds_.size() > 1) build_tree();
     for (const auto& [shape, radiance] : unsampled_) {
         out_.shapes[shape].first_light = static_cast<std::uint32_t>(out_.lights.size());
         out_.lights.push_back(light_of(LIGHT_TRIANGLE, radiance));
     }
 }
 
+// Each light at infinity counts as much as all that have a place.
+void LightFlattener::share_out() {
+    const std::size_t infinite = out_.lights.size() - bounds_.size();
+    const float share = 1.0F / static_cast<float>(infinite + (bounds_.empty() ? 0 : 1));
+    for (Light& light : out_.lights) light.selection_probability = share;
+}
+
 void LightFlattener::build_tree() {
-    out_.features.light_tree = true;
+    out_.features.placed_lights = static_cast<int>(bounds_.size());
     LightTree tree = build_light_tree(bounds_);
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
         out_.lights[i].selection_probability = 0.0F;
         out_.lights[i].place = tree.places[i];
     }
     out_.light_tree = std::move(tree.nodes);
-    // Each light at infinity counts as much as the whole tree.
-    const std::size_t infinite = out_.lights.size() - bounds_.size();
-    for (std::size_t i = bounds_.size(); i < out_.lights.size(); ++i) {
-        out_.lights[i].selection_probability = 1.0F / static_cast<float>(infinite + 1);
-    }
 }
 
-void LightFlattener::build_alias() {
-    const std::vector<AliasEntry> alias = build_alias_table(powers_);
-    double sum = 0.0;
-    for (const double power : powers_) sum += power;
-    for (std::size_t i = 0; i < out_.lights.size(); ++i) {
-        out_.lights[i].alias = alias[i];
-        const double p = sum > 0.0 ? powers_[i] / sum : 1.0 / static_cast<double>(powers_.size());
-        out_.lights[i].selection_probability = static_cast<float>(p);
-    }
-}
-
-void LightFlattener::add(const ConstantEmitter& e, double power) {
+void LightFlattener::add(const ConstantEmitter& e) {
     Environment environment{};
     environment.radiance = packed(e.radiance);
     environment.to_world = environment.to_object = affine(glm::mat4(1.0F));
     environment.light = static_cast<std::uint32_t>(out_.lights.size());
     out_.environment.push_back(environment);
-    add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}), power);
+    add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}));
 }
 
 void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius) {
     const Bitmap image = with_three_rows(e.image);
     EnvironmentTable table = build_environment_table(image, "envmap", out_.features.estimator != Estimator::light);
-    const double power = environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius);
-    if (!(power > 0.0)) return;
+    if (!(environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius) > 0.0)) return;
     Environment environment{};
     environment.to_world = affine(e.to_world);
     environment.to_object = affine(glm::mat4(glm::inverse(glm::dmat4(e.to_world))));
@@ -212,7 +194,7 @@ void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius)
     out_.environment_texels = image.rgb;
     out_.environment_sums = std::move(table.sums);
     out_.environment_density = std::move(table.density);
-    add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}), power);
+    add_light(light_of(LIGHT_ENVMAP, {environment.radiance, WAVELOBE_NONE}));
 }
 
 void LightFlattener::set_range(Light& light, float range) {
@@ -220,7 +202,7 @@ void LightFlattener::set_range(Light& light, float range) {
     out_.features.light_range = out_.features.light_range || range > 0.0F;
 }
 
-void LightFlattener::add(const PointEmitter& e, double power) {
+void LightFlattener::add(const PointEmitter& e) {
     Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(e.position);
     set_range(light, e.range);
@@ -228,10 +210,10 @@ void LightFlattener::add(const PointEmitter& e, double power) {
     bounds.spread = std::numbers::pi;
     bounds.emission = 0.5 * std::numbers::pi;
     bounds.intensity = luminance(e.intensity);
-    add_placed_light(light, power, bounds);
+    add_placed_light(light, bounds);
 }
 
-void LightFlattener::add(const SpotEmitter& e, double power) {
+void LightFlattener::add(const SpotEmitter& e) {
     Light light = light_of(LIGHT_SPOT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(glm::vec3(e.to_world[3]));
     light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
@@ -250,10 +232,10 @@ void LightFlattener::add(const SpotEmitter& e, double power) {
     bounds.axis = glm::normalize(glm::dvec3(e.to_world[2]));
     bounds.emission = glm::radians(static_cast<double>(e.cutoff_degrees));
     bounds.intensity = luminance(e.intensity);
-    add_placed_light(light, power, bounds);
+    add_placed_light(light, bounds);
 }
 
-void LightFlattener::add(const ProjectorEmitter& e, double power) {
+void LightFlattener::add(const ProjectorEmitter& e) {
     Light light = light_of(LIGHT_PROJECTOR, materials_.rgb(e.irradiance));
     out_.features.textured_emitters = out_.features.textured_emitters || e.irradiance.texture != nullptr;
     light.position = packed(glm::vec3(e.to_world[3]));
@@ -268,13 +250,13 @@ void LightFlattener::add(const ProjectorEmitter& e, double power) {
     bounds.emission = std::atan(std::hypot(half_width, half_height));
     // Brightest towards the corners.
     bounds.intensity = static_cast<double>(light.inverse_area) * mean_luminance(e.irradiance) / std::pow(std::cos(bounds.emission), 3.0);
-    add_placed_light(light, power, bounds);
+    add_placed_light(light, bounds);
 }
 
-void LightFlattener::add(const DirectionalEmitter& e, double power) {
+void LightFlattener::add(const DirectionalEmitter& e) {
     Light light = light_of(LIGHT_DIRECTIONAL, {packed(e.irradiance), WAVELOBE_NONE});
     light.edge1 = packed(e.direction);
-    add_light(light, power);
+    add_light(light);
 }
 
 void LightFlattener::add_emitter(const Emitter& emitter, double radius) {
@@ -282,11 +264,10 @@ void LightFlattener::add_emitter(const Emitter& emitter, double radius) {
         add_environment_map(*map, radius);
         return;
     }
-    const double power = emitter_power(emitter, radius);
-    if (!(power > 0.0)) return;  // black: nothing it could add
+    if (!(emitter_power(emitter, radius) > 0.0)) return;  // black: nothing it could add
     std::visit(
-        [this, power](const auto& e) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e, power);
+        [this](const auto& e) {
+            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e);
         },
         emitter);
 }

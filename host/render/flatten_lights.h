@@ -17,7 +17,7 @@ inline std::uint32_t emitter_flags(const AreaEmitter& emitter) {
     return flags;
 }
 
-// Fills lights and the environment of a device scene, and the table that chooses among them.
+// Fills lights and the environment of a device scene, and what chooses among them.
 class LightFlattener {
 public:
     LightFlattener(MaterialFlattener& materials, DeviceScene& out) : materials_(materials), out_(out) {}
@@ -30,13 +30,13 @@ public:
                       const Bounds& bounds);
     // Those without a shape; `radius` is that of the scene's bounding sphere. Black ones are left out.
     void add_emitter(const Emitter& emitter, double radius);
-    // How lights are chosen: by a tree if several have a place, else by an alias table over power (alike if none has any).
+    // How lights are chosen: those with a place by a tree, if there are several.
     void finish();
     // Not at infinity.
     static bool has_place(const Emitter& emitter);
     // How many have one; they come first if add_emitter was called for them first.
     std::uint32_t finite_count() const { return static_cast<std::uint32_t>(bounds_.size()); }
-    std::uint32_t count() const { return static_cast<std::uint32_t>(powers_.size()); }
+    std::uint32_t count() const { return count_; }
 
 private:
     // What all triangles of a mesh have in common.
@@ -47,21 +47,21 @@ private:
     };
     static const std::vector<glm::vec2>& uvs_of(const AreaEmitter& emitter, const TriangleMesh& mesh);
     void add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t);
-    void add_light(const Light& light, double power);
-    void add_placed_light(const Light& light, double power, const LightBounds& bounds);
+    void add_light(const Light& light);
+    void add_placed_light(const Light& light, const LightBounds& bounds);
     void set_range(Light& light, float range);
     void build_tree();
-    void build_alias();
+    void share_out();
     void add_environment_map(const EnvironmentMap& e, double radius);
-    void add(const ConstantEmitter& e, double power);
-    void add(const PointEmitter& e, double power);
-    void add(const SpotEmitter& e, double power);
-    void add(const ProjectorEmitter& e, double power);
-    void add(const DirectionalEmitter& e, double power);
+    void add(const ConstantEmitter& e);
+    void add(const PointEmitter& e);
+    void add(const SpotEmitter& e);
+    void add(const ProjectorEmitter& e);
+    void add(const DirectionalEmitter& e);
 
     MaterialFlattener& materials_;
     DeviceScene& out_;
-    std::vector<double> powers_;
+    std::uint32_t count_ = 0;
     std::vector<LightBounds> bounds_;  // of the lights with a place
     std::vector<std::pair<std::size_t, TexturedRgb>> unsampled_;  // shapes and their radiance
 };

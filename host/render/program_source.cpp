@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "render/feature_tables.h"
+#include "shared/lights.h"
 
 namespace wavelobe {
 namespace {
@@ -77,7 +78,9 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_ENVIRONMENT", f.has_environment());
     // One light needs no choice; of several the kernels are told the number at run time.
     out.define("LIGHT_COUNT", std::min(f.light_count, 2));
-    out.define("HAS_LIGHT_TREE", f.light_tree);
+    out.define("HAS_LIGHT_TREE", f.light_tree());
+    // So few that the root has them all: the kernels are told how many.
+    out.define("PLACED_LIGHTS", f.placed_lights <= LIGHT_CHILDREN ? f.placed_lights : 0);
     out.define("HAS_GLOSSY_RECEIVERS", f.glossy_receivers());
     out.define("HAS_LIGHT_RANGE", f.light_range);
     out.define("HAS_SMOOTH_CONES", f.smooth_cones);

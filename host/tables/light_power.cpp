@@ -75,8 +75,6 @@ double mean_luminance(const Parameter& radiance) {
     return std::visit([](const auto& source) { return mean_luminance(source); }, radiance.texture->source);
 }
 
-double area_power(const AreaEmitter& emitter, double area) { return pi * area * mean_luminance(emitter.radiance); }
-
 double environment_power(double luminance_integral, double scene_radius) {
     return luminance_integral * disk_area(scene_radius);
 }

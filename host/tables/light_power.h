@@ -1,4 +1,4 @@
-// Emitted power of lights, W, weighted by luminance: how likely light sampling chooses each.
+// Emitted power of lights, W, weighted by luminance.
 // Lights at infinity count with what passes through the scene's bounding sphere (Pharr, Jakob, Humphreys, "Physically
 // Based Rendering", "Light Sources").
 #pragma once
@@ -12,9 +12,6 @@ double luminance(const Rgb& color);
 
 // Mean luminance of a texture's source, or the luminance of a constant.
 double mean_luminance(const Parameter& radiance);
-
-// One-sided diffuse emission of `area`, m^2.
-double area_power(const AreaEmitter& emitter, double area);
 
 // `scene_radius`: of the scene's bounding sphere, m. Throws InputError for a picture build_environment_table refuses.
 double emitter_power(const Emitter& emitter, double scene_radius);

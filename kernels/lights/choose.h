@@ -76,19 +76,14 @@ INLINE Float placed_light_probability(LightInput in, Receiver receiver, Int want
     return (1.0f - below) * light_tree_probability(in.light_tree, receiver, place, wanted);
 }
 #else
-// Chooses by power: Walker's alias method. `in->light` is the light; the result its probability.
+// Any light is as good as another. `in->light` is the light; the result its probability.
 INLINE Float choose_light(LightInput *in, Float u) {
 #if LIGHT_COUNT == 1
     in->light = (UInt)0u;
     return ONE;
 #else
-    Float at = u * (float)in->light_count;
-    UInt row = as_UInt(convert_Int(at));
-    row = SELECT(row < (UInt)in->light_count, row, (UInt)(in->light_count - 1u)); // u * count may round up to count
-    Float fraction = at - convert_Float(as_Int(row));
-    Float threshold = gather((global const float *)in->lights + WORD_OFFSET(Light, alias), row * RECORD_WORDS(Light));
-    UInt other = gather_uint((global const uint *)in->lights + WORD_OFFSET(Light, alias) + 1u, row * RECORD_WORDS(Light));
-    in->light = SELECT(fraction < threshold, row, other);
+    UInt light = as_UInt(convert_Int(u * (float)in->light_count));
+    in->light = SELECT(light < (UInt)in->light_count, light, (UInt)(in->light_count - 1u)); // u * count may round up to count
     return GATHER_FIELD(in->lights, Light, in->light, selection_probability);
 #endif
 }

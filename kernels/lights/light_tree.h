@@ -1,7 +1,10 @@
 // Chooses among the lights that have a place by walking down a tree of bounds (host/tables/light_tree.h), and tells with what
 // probability a walk ends at a given light. Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive
-// Tree Splitting", with eight children a node, all of them weighed at once; walked by one random number, stretched at each
-// node, so that its stratification survives. Receivers go one by one: gathers of all lanes' nodes would cost more.
+// Tree Splitting", with eight children a node; walked by one random number, stretched at each node, so that its stratification
+// survives.
+//
+// Of a tree the children of a node are weighed side by side, for one receiver after the other: gathers of all lanes' nodes would
+// cost more. Where PLACED_LIGHTS says that a node holds them all, they are weighed one by one, for all receivers side by side.
 #ifndef WAVELOBE_LIGHTS_LIGHT_TREE_H
 #define WAVELOBE_LIGHTS_LIGHT_TREE_H
 
@@ -10,59 +13,115 @@
 
 #define MOST_LIGHT_LEVELS 32u // as the host builds them
 
-// ---- importance of a node's children -------------------------------------------------------------------------
-
 // Cosines reach this far below the horizon: covers the rounding of a receiver's code (6e-5) and that of bounds, so that a
 // light that shines is never without a chance.
 #define HORIZON_SLACK 0x1p-13f
 // Squares of distances below this one are as good as none, and keep eight importances and their sum finite.
 #define LEAST_DISTANCE2 0x1p-100f
 
-#define child_row(node, name) (*(global const float8 *)(node)->name)
+#if PLACED_LIGHTS
+#define VALUES Float
+#define MASK Int
+#define FUSED madd
+#define NAMED(name) name##_lanes
+#else
+#define VALUES float8
+#define MASK int8
+#define FUSED madd8
+#define NAMED(name) name##_eight
+#endif
+#include "lights/light_importance.def"
+#undef VALUES
+#undef MASK
+#undef FUSED
+#undef NAMED
 
+#if PLACED_LIGHTS
+// ---- a few lights: the children of the only node -----------------------------------------------------------------
+
+INLINE Receiver_lanes receiver_lanes(Receiver r) {
+    Receiver_lanes lanes = {
+        r.position.x, r.position.y, r.position.z, r.normal.x, r.normal.y, r.normal.z, r.any_side,
 #if HAS_GLOSSY_RECEIVERS
-// The lobe towards the nearest direction of each sphere; `along` is how far its centre lies along the axis.
-INLINE float8 lobe_towards(float peak, float8 along, float8 d2, float8 radius, float8 distance2, float8 distance, float8 inverse) {
-    float8 aside = sqrt(GREATER(d2 - along * along, (float8)0.0f)), touching = sqrt(distance2 - radius * radius);
-    // Cosine and sine of the difference of two angles.
-    float8 scale = distance * inverse;
-    float8 cosine = LESSER(madd8(along, touching, aside * radius) * scale, distance);
-    float8 sine = (aside * touching - along * radius) * scale;
-    int8 meets = (along >= touching) | (touching <= 0.0f); // or the receiver is in the sphere
-    return lobe_profile8(peak, SELECT(meets, (float8)0.0f, sine), distance + SELECT(meets, distance, cosine) + HORIZON_SLACK * distance);
+        r.axis.x, r.axis.y, r.axis.z, r.peak, r.diffuse,
+#endif
+    };
+    return lanes;
 }
-#endif
 
-// For each child a bound on the irradiance from its lights, none of them nearer than its sphere is wide; of a glossy receiver on
-// what its lobe reflects of it. Cosines are bounded as lengths over the distance: nothing in the sphere lies higher above a
-// plane than its centre does by more than its radius. (Too loose a bound for the axes of narrow lobes.)
-INLINE float8 light_importances(global const struct LightNode *node, const LaneReceiver *r) {
-    float8 x = child_row(node, center_x) - r->x, y = child_row(node, center_y) - r->y, z = child_row(node, center_z) - r->z;
-    float8 radius = child_row(node, radius);
-    float8 d2 = madd8(x, x, madd8(y, y, z * z));
-    float8 distance2 = GREATER(GREATER(d2, radius * radius), (float8)LEAST_DISTANCE2);
-    float8 distance = sqrt(distance2), inverse = 1.0f / distance2, slack = HORIZON_SLACK * distance;
+// importance[i] of light i for each lane; returns their sum.
+INLINE Float few_importances(global const struct LightNode *node, Receiver receiver, Float *importance) {
+    Receiver_lanes r = receiver_lanes(receiver);
+    Float total = ZERO;
+    for (uint i = 0u; i < PLACED_LIGHTS; i++) {
+        LightBounds_lanes b = {node->center_x[i], node->center_y[i], node->center_z[i], node->radius[i],
+                               node->axis_x[i], node->axis_y[i], node->axis_z[i],
+                               node->cos_spread[i], node->sin_spread[i], node->cos_emission[i], node->intensity[i]};
+        importance[i] = light_importance_lanes(&b, &r);
+        total += importance[i];
+    }
+    return total;
+}
 
-    float8 along = -madd8(child_row(node, axis_x), x, madd8(child_row(node, axis_y), y, child_row(node, axis_z) * z));
-    float8 aside = sqrt(GREATER(d2 - along * along, (float8)0.0f));
-    float8 cos_spread = child_row(node, cos_spread), cos_emission = child_row(node, cos_emission);
-    float8 turned = madd8(along, cos_spread, aside * child_row(node, sin_spread));
-    float8 emitted = SELECT(along >= cos_spread * distance, distance, turned) + radius + slack;
-    // The places of the sphere are as near as the distance less the radius, or as far as with it.
-    int8 shines = madd8(fabs(cos_emission), radius, emitted) > cos_emission * distance;
-    emitted = GREATER(LESSER(emitted, distance), slack);
+INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver receiver, Float u, Float u_deep, Int wanted, UInt *light) {
+    Float importance[PLACED_LIGHTS];
+    Float total = few_importances(tree, receiver, importance), target = u * total, sum = ZERO, mine = ZERO;
+    Int before = TRUE_MASK; // of the light that is looked for
+    *light = (UInt)0u;
+    for (uint i = 0u; i < PLACED_LIGHTS; i++) {
+        sum += importance[i];
+        Int here = before & (target < sum);
+        mine = SELECT(here, importance[i], mine);
+        *light = SELECT(here, (UInt)(tree->child[i] & ~LIGHT_LEAF), *light);
+        before &= !here;
+    }
+    return SELECT(wanted & (mine > 0.0f), mine / total, ZERO);
+}
 
-    float8 height = madd8((float8)r->nx, x, madd8((float8)r->ny, y, r->nz * z));
-    float8 received = GREATER(LESSER(height + radius + slack, distance), (float8)0.0f);
+INLINE Float light_tree_probability(global const struct LightNode *tree, Receiver receiver, UInt leaf, Int wanted) {
+    Float importance[PLACED_LIGHTS];
+    Float total = few_importances(tree, receiver, importance), mine = ZERO;
+    for (uint i = 0u; i < PLACED_LIGHTS; i++) mine = SELECT(leaf == (UInt)i, importance[i], mine);
+    return SELECT(wanted & (mine > 0.0f), mine / total, ZERO);
+}
+
+#else
+// ---- the children of a node ------------------------------------------------------------------------------------
+
+typedef struct {
+    LaneFloats x, y, z, nx, ny, nz;
 #if HAS_GLOSSY_RECEIVERS
-    float8 mirrored = madd8((float8)r->axis_x, x, madd8((float8)r->axis_y, y, r->axis_z * z));
-    float8 lobe = lobe_towards(r->peak, mirrored, d2, radius, distance2, distance, inverse);
-    // What reflects into the lobe knows no cosine.
-    received = madd8((float8)r->diffuse, received, SELECT(received > 0.0f, lobe * distance, (float8)0.0f));
+    LaneFloats axis_x, axis_y, axis_z, peak, diffuse;
 #endif
-    received = r->any_side ? distance : received;
-    float8 importance = (child_row(node, intensity) * emitted * inverse) * (received * inverse);
-    return SELECT(shines, importance, (float8)0.0f);
+    uint any_side; // bits
+} Receivers;
+
+INLINE Receivers receivers_of(Receiver r) {
+    Receivers lanes = {
+        lane_floats(r.position.x), lane_floats(r.position.y), lane_floats(r.position.z),
+        lane_floats(r.normal.x), lane_floats(r.normal.y), lane_floats(r.normal.z),
+#if HAS_GLOSSY_RECEIVERS
+        lane_floats(r.axis.x), lane_floats(r.axis.y), lane_floats(r.axis.z), lane_floats(r.peak), lane_floats(r.diffuse),
+#endif
+        lane_bits(r.any_side)};
+    return lanes;
+}
+
+#define child_row(name) (*(global const float8 *)node->name)
+
+// For each child; of receiver i.
+INLINE float8 light_importances(global const struct LightNode *node, const Receivers *lanes, uint i) {
+    Receiver_eight r = {
+        lanes->x.value[i], lanes->y.value[i], lanes->z.value[i], lanes->nx.value[i], lanes->ny.value[i], lanes->nz.value[i],
+        (int8)(-(int)(lanes->any_side >> i & 1u)),
+#if HAS_GLOSSY_RECEIVERS
+        lanes->axis_x.value[i], lanes->axis_y.value[i], lanes->axis_z.value[i], lanes->peak.value[i], lanes->diffuse.value[i],
+#endif
+    };
+    LightBounds_eight b = {child_row(center_x), child_row(center_y), child_row(center_z), child_row(radius),
+                           child_row(axis_x), child_row(axis_y), child_row(axis_z),
+                           child_row(cos_spread), child_row(sin_spread), child_row(cos_emission), child_row(intensity)};
+    return light_importance_eight(&b, &r);
 }
 
 // Sums of the first one, two, ... values.
@@ -86,17 +145,18 @@ INLINE ChildFloats child_floats(float8 v) {
 // All lanes take a step before any takes the next: what a step waits for, the others' steps fill.
 
 typedef struct {
-    ReceiverLanes receivers;
+    Receivers receivers;
     LaneFloats u, u_deep, probability;
     LaneUints child; // where the walk stands: a node, or LIGHT_LEAF | light
 } LightWalks;
 
+// A number of 24 bits is used up on the way to one of many lights: below this probability a second one takes over.
+#define LEAST_SHALLOW 0x1p-12f
+
 // One lane's step down. 1 if the walk goes on, 0 if it is at a light, or where none shines: then its probability is zero.
-// A number of 24 bits is used up on the way to one of many lights, so `u_deep` takes over below a probability of 2^-12.
 INLINE uint walk_down(global const struct LightNode *tree, LightWalks *w, uint i) {
-    LaneReceiver r = receiver_of_lane(&w->receivers, i);
     global const struct LightNode *node = tree + w->child.value[i];
-    float8 importances = light_importances(node, &r), sums = running_sums(importances);
+    float8 importances = light_importances(node, &w->receivers, i), sums = running_sums(importances);
     ChildFloats importance = child_floats(importances), sum = child_floats(sums);
     float total = sums.s7, u = w->u.value[i], target = u * total;
     uint chosen = popcount(lane_bits8(sums <= target));
@@ -105,7 +165,7 @@ INLINE uint walk_down(global const struct LightNode *tree, LightWalks *w, uint i
     uint shines = mine > 0.0f;
     float before = w->probability.value[i], after = shines ? before * (mine / total) : 0.0f;
     float rest = LESSER(GREATER((target - below) / mine, 0.0f), BELOW_ONE);
-    w->u.value[i] = (before >= 0x1p-12f) & (after < 0x1p-12f) ? w->u_deep.value[i] : rest;
+    w->u.value[i] = (before >= LEAST_SHALLOW) & (after < LEAST_SHALLOW) ? w->u_deep.value[i] : rest;
     w->probability.value[i] = after;
     uint child = node->child[chosen];
     w->child.value[i] = child;
@@ -114,7 +174,7 @@ INLINE uint walk_down(global const struct LightNode *tree, LightWalks *w, uint i
 
 // In the wanted lanes the light that `u` leads to, and the probability of getting there: zero where no light shines.
 INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver receiver, Float u, Float u_deep, Int wanted, UInt *light) {
-    LightWalks w = {receiver_lanes(receiver), lane_floats(u), lane_floats(u_deep), lane_floats(ONE), lane_uints((UInt)0u)};
+    LightWalks w = {receivers_of(receiver), lane_floats(u), lane_floats(u_deep), lane_floats(ONE), lane_uints((UInt)0u)};
     uint walking = lane_bits(wanted);
     while (walking) {
         uint left = walking;
@@ -128,9 +188,9 @@ INLINE Float walk_light_tree(global const struct LightNode *tree, Receiver recei
     return probability;
 }
 
-// Probability that the importances of a node choose this child.
-INLINE float child_probability(global const struct LightNode *node, const LaneReceiver *r, uint child) {
-    float8 importances = light_importances(node, r);
+// Probability that the importances of a node choose this child for receiver i.
+INLINE float child_probability(global const struct LightNode *node, const Receivers *receivers, uint i, uint child) {
+    float8 importances = light_importances(node, receivers, i);
     ChildFloats importance = child_floats(importances);
     float mine = importance.value[child];
     return mine > 0.0f ? mine / running_sums(importances).s7 : 0.0f;
@@ -138,7 +198,7 @@ INLINE float child_probability(global const struct LightNode *node, const LaneRe
 
 // Probability that a walk ends at the lane's leaf. Found on the way up; multiplied in the order of the way down.
 INLINE Float light_tree_probability(global const struct LightNode *tree, Receiver receiver, UInt leaf, Int wanted) {
-    ReceiverLanes receivers = receiver_lanes(receiver);
+    Receivers receivers = receivers_of(receiver);
     LaneUints place = lane_uints(leaf);
     LaneFloats steps[MOST_LIGHT_LEVELS];
     uint level = 0u, climbing = lane_bits(wanted);
@@ -147,9 +207,8 @@ INLINE Float light_tree_probability(global const struct LightNode *tree, Receive
         uint left = climbing;
         do {
             POP_LOWEST_BIT(left, i);
-            LaneReceiver r = receiver_of_lane(&receivers, i);
             global const struct LightNode *node = tree + place.value[i] / LIGHT_CHILDREN;
-            steps[level].value[i] = child_probability(node, &r, place.value[i] % LIGHT_CHILDREN);
+            steps[level].value[i] = child_probability(node, &receivers, i, place.value[i] % LIGHT_CHILDREN);
             place.value[i] = node->place;
             climbing ^= (uint)(node->place == LIGHT_ROOT) << i;
         } while (left);
@@ -158,5 +217,7 @@ INLINE Float light_tree_probability(global const struct LightNode *tree, Receive
     while (level) probability *= LANES_OF(steps[--level]);
     return SELECT(wanted, probability, ZERO);
 }
+
+#endif
 
 #endif

@@ -89,14 +89,6 @@ INLINE void decode_lobe(UInt code, Receiver *r) {
     Float share = convert_Float(as_Int(code >> LOBE_SHARE_SHIFT)) * (1.0f / 3.0f);
     r->diffuse = madd(share, (Float)(1.0f - LEAST_DIFFUSE), (Float)LEAST_DIFFUSE);
 }
-
-// A lobe of the shape that GGX's microfacets give to a mirror image at normal incidence: by the sine of the angle to its axis and
-// one plus the cosine, both times the same length.
-INLINE float8 lobe_profile8(float peak, float8 sine, float8 one_more) {
-    float8 near = one_more * one_more;
-    float8 x = near / madd8(4.0f * peak * sine, sine, near); // one over 1 + 4 peak times the squared tangent of half the angle
-    return peak * (x * x);
-}
 #endif
 
 INLINE Receiver receiver_of(Vec3 position, ReceiverCode code) {
@@ -107,46 +99,6 @@ INLINE Receiver receiver_of(Vec3 position, ReceiverCode code) {
 #if HAS_GLOSSY_RECEIVERS
     decode_lobe(code.lobe, &r);
 #endif
-    return r;
-}
-
-// ---- one by one ------------------------------------------------------------------------------------------------
-
-typedef struct {
-    float x, y, z, nx, ny, nz;
-    int any_side;
-#if HAS_GLOSSY_RECEIVERS
-    float axis_x, axis_y, axis_z, peak, diffuse;
-#endif
-} LaneReceiver;
-
-typedef struct {
-    LaneFloats x, y, z, nx, ny, nz;
-#if HAS_GLOSSY_RECEIVERS
-    LaneFloats axis_x, axis_y, axis_z, peak, diffuse;
-#endif
-    uint any_side; // bits
-} ReceiverLanes;
-
-INLINE ReceiverLanes receiver_lanes(Receiver r) {
-    ReceiverLanes lanes = {
-        lane_floats(r.position.x), lane_floats(r.position.y), lane_floats(r.position.z),
-        lane_floats(r.normal.x), lane_floats(r.normal.y), lane_floats(r.normal.z),
-#if HAS_GLOSSY_RECEIVERS
-        lane_floats(r.axis.x), lane_floats(r.axis.y), lane_floats(r.axis.z), lane_floats(r.peak), lane_floats(r.diffuse),
-#endif
-        lane_bits(r.any_side)};
-    return lanes;
-}
-
-INLINE LaneReceiver receiver_of_lane(const ReceiverLanes *lanes, uint i) {
-    LaneReceiver r = {
-        lanes->x.value[i], lanes->y.value[i], lanes->z.value[i], lanes->nx.value[i], lanes->ny.value[i], lanes->nz.value[i],
-        (int)(lanes->any_side >> i & 1u),
-#if HAS_GLOSSY_RECEIVERS
-        lanes->axis_x.value[i], lanes->axis_y.value[i], lanes->axis_z.value[i], lanes->peak.value[i], lanes->diffuse.value[i],
-#endif
-    };
     return r;
 }
 

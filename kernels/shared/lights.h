@@ -1,22 +1,13 @@
-// A light as the kernels see it, and the tables that choose among lights and among environment cells.
+// A light as the kernels see it, and the tree by which lights are chosen.
 #ifndef WAVELOBE_SHARED_LIGHTS_H
 #define WAVELOBE_SHARED_LIGHTS_H
 
 #include "shared/materials.h"
 
-// One row of an alias table (Walker 1974, Vose 1991): entry i stands with probability `threshold`,
-// otherwise `other` does.
-struct AliasEntry {
-    float threshold;
-    Uint32 other;
-};
-WAVELOBE_CHECK_SIZE(AliasEntry, 8);
-
 // Which fields a kind uses is said in its lights/<name>.h.
 struct Light {
     Uint32 kind;                  // LIGHT_x of lights/lights.def
     float selection_probability;  // of this light among all; not of those in a tree
-    struct AliasEntry alias;      // row of this light in the selection table
     struct TexturedRgb radiance;  // W / (m^2 sr); point and spot: intensity, W / sr; directional: irradiance, W / m^2; projector: a picture
     struct Packed3 position;      // first vertex; point, spot: where it is
     struct Packed3 edge1;         // to the second vertex; spot, directional: direction the light travels, unit
@@ -30,7 +21,7 @@ struct Light {
     float inverse_range;          // point, spot: over the distance from which on there is no light, 1 / m; 0: none
     Uint32 place;                 // of its leaf in the light tree: LIGHT_PLACE
 };
-WAVELOBE_CHECK_SIZE(Light, 132);
+WAVELOBE_CHECK_SIZE(Light, 124);
 
 #define LIGHT_CHILDREN 8
 

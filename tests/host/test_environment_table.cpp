@@ -196,16 +196,15 @@ TEST(LightPower, EnvironmentsPassTheBoundingSphere) {
     EXPECT_NEAR(emitter_power(map, 3.0), expected, 1e-9 * expected);
 }
 
-TEST(LightPower, AreaLightsEmitPiTimesAreaTimesMeanRadiance) {
-    AreaEmitter emitter;
-    emitter.radiance.value = Rgb(2.0F);
-    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+TEST(LightPower, TexturesCountWithTheirMeanLuminance) {
+    Parameter radiance{Rgb(2.0F), nullptr};
+    EXPECT_NEAR(mean_luminance(radiance), luminance(Rgb(2.0F)), 1e-9);
     auto texture = std::make_shared<Texture>();
     texture->source = picture(2, 1, [](int x, int) { return Rgb(x == 0 ? 0.0F : 4.0F); });
-    emitter.radiance.texture = texture;
-    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+    radiance.texture = texture;
+    EXPECT_NEAR(mean_luminance(radiance), luminance(Rgb(2.0F)), 1e-9);
     texture->source = Checkerboard{Rgb(1.0F), Rgb(3.0F)};
-    EXPECT_NEAR(area_power(emitter, 3.0), pi * 3.0 * luminance(Rgb(2.0F)), 1e-9);
+    EXPECT_NEAR(mean_luminance(radiance), luminance(Rgb(2.0F)), 1e-9);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ const std::vector<Known> known_constants{
     {"lights/rectangle.h", "ONE), (Float)0x1p-40f)", "square of a sine below the rounding of its cosine"},
     {"lights/light_tree.h", "#define HORIZON_SLACK 0x1p-13f", "rounding of coded normals: lights are sampled rather too often"},
     {"lights/light_tree.h", "#define LEAST_DISTANCE2 0x1p-100f", "keeps importances finite"},
-    {"lights/light_tree.h", "probability < 0x1p-12f", "where the digits of a random number run out"},
+    {"lights/light_tree.h", "#define LEAST_SHALLOW 0x1p-12f", "where the digits of a random number run out"},
     {"lights/envmap.h", "#define LEAST_POLE_SINE 0x1p-36f", "keeps a density finite"},
     {"shapes/box_test.h", "least = 0x1p-60f", "component of a unit direction that divides"},
     {"shapes/box_test.h", "least = (Float)0x1p-60f", "the same of lanes"},

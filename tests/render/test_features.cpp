@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, Additions,
     testing::Values(
         Addition{"many_points", many_points, {"light:point", "light_choice", "light_tree"}},
-        Addition{"point", R"(<emitter type="point"/>)", {"light:point", "light_choice"}},
+        Addition{"point", R"(<emitter type="point"/>)", {"light:point", "light_choice", "light_tree"}},
         Addition{"constant", R"(<emitter type="constant"/>)", {"light:constant", "light_choice"}},
         Addition{"black_environment", R"(<emitter type="constant"><rgb name="radiance" value="0"/></emitter>)", {}},
         Addition{"diffuse_sphere", R"(<bsdf type="diffuse"/>)", {"analytic_shapes"}},

@@ -105,7 +105,7 @@ public:
         set_bits(queue, layout_[path_id], slot, p.id);
         set_bits(queue, layout_[path_depth], slot, p.depth);
         set(queue, layout_[path_eta], slot, p.eta);
-        if (scene_.features.light_tree) set_bits(queue, layout_[path_receiver], slot, p.receiver);
+        if (scene_.features.light_tree()) set_bits(queue, layout_[path_receiver], slot, p.receiver);
         if (keeps_origin(queue)) set_vector(queue, layout_[path_origin], slot, p.origin);
         if (scene_.features.instances) set_bits(queue, layout_[path_instance], slot, p.instance);
     }
@@ -121,7 +121,7 @@ public:
                 get_bits(queue, layout_[path_id], slot),
                 get_bits(queue, layout_[path_depth], slot),
                 get(queue, layout_[path_eta], slot),
-                scene_.features.light_tree ? get_bits(queue, layout_[path_receiver], slot) : 0U,
+                scene_.features.light_tree() ? get_bits(queue, layout_[path_receiver], slot) : 0U,
                 keeps_origin(queue) ? get_vector(queue, layout_[path_origin], slot) : glm::vec3{0},
                 scene_.features.instances ? get_bits(queue, layout_[path_instance], slot) : INSTANCE_NONE};
     }
