@@ -53,7 +53,7 @@ INLINE Float sheen_value(Sheen s, Vec3 wi, Vec3 wo, Float albedo) {
     Float smooth = (1.0f - alpha) * (1.0f - alpha);
     Vec3 sum = add(wi, wo);
     Float across = madd(sum.x, sum.x, sum.y * sum.y);
-    Float sin2 = across / madd(sum.z, sum.z, across);
+    Float sin2 = across / GREATER(madd(sum.z, sum.z, across), (Float)FLOAT_MIN_NORMAL); // both along the horizon and opposite: zero
     Float inverse = 1.0f / alpha;
     Float density = (2.0f + inverse) * (0.5f * INV_PI) * lane_pow(sin2, 0.5f * inverse);
     Float masking = 1.0f + sheen_masking(wi.z, smooth) + sheen_masking(wo.z, smooth);

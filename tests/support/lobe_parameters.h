@@ -186,11 +186,11 @@ inline const std::map<std::string, std::vector<LobeParameters>>& lobe_parameters
         {"layered_metallic_roughness_base",
          {{"coated", layered(metallic_roughness(white, 0.0F, 0.5F), 0)}, {"everything", layered(metallic_roughness(coloured, 0.3F, 0.5F), 1)}}},
         {"sheen_metallic_roughness_base",
-         // Masking is the exponential of up to 20.
-         {{"white", layered(metallic_roughness(white, 0.0F, 0.5F), 7), 1.0, true, 200},
-          {"metal", layered(metallic_roughness(white, 1.0F, 0.5F), 7), 1.0, true, 200},
-          {"rich", layered(metallic_roughness(coloured, 0.3F, 0.5F), 8), 1.0, true, 200},
-          {"smooth", layered(metallic_roughness(white, 0.0F, 0.5F), 9), 1.0, true, 200}}},
+         // Masking is the exponential of up to 20, whose own rounding is 16 of the result's; it is a sum of such.
+         {{"white", layered(metallic_roughness(white, 0.0F, 0.5F), 7), 1.0, true, 100},
+          {"metal", layered(metallic_roughness(white, 1.0F, 0.5F), 7), 1.0, true, 100},
+          {"rich", layered(metallic_roughness(coloured, 0.3F, 0.5F), 8), 1.0, true, 100},
+          {"smooth", layered(metallic_roughness(white, 0.0F, 0.5F), 9), 1.0, true, 100}}},
         // But for the balanced one, Ward's highlights are not bounded: faint ones gain nothing.
         {"ward",
          {{"balanced", rough(coloured, 0.3F, 0.3F)},
