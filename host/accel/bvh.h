@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -35,11 +37,18 @@ struct Bvh {
 // `best` is the one of the others that the surface-area heuristic prefers: on few or large triangles splits often do not pay.
 enum class BvhQuality { fast, split, best };
 
+// Told what share of the work is done, now and then, by any thread but one at a time; false stops it.
+using BuildProgress = std::function<bool(double share)>;
+
+struct BuildStopped : std::runtime_error {
+    BuildStopped() : std::runtime_error("the building of the hierarchy was stopped") {}
+};
+
 // Topology from Embree's public builder: surface-area heuristic, with spatial splits for `split`.
 // Primitive ids in leaves index `triangles`. `analytic_bounds` must contain their shapes with room for rounding.
-// Throws std::runtime_error if the builder fails.
+// Throws std::runtime_error if the builder fails, BuildStopped where `progress` asks for it.
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
-              int threads, std::span<const Bounds> instance_bounds = {});
+              int threads, std::span<const Bounds> instance_bounds = {}, const BuildProgress& progress = {});
 
 // How many rays without anything in common are best traced in turn (kernels/shapes/walks.h): several through a hierarchy that
 // does not stay in the caches, else one.

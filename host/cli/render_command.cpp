@@ -57,6 +57,7 @@ public:
         last_ = now;
         return passed.count();
     }
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_).count(); }
 
 private:
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
@@ -148,8 +149,15 @@ int run(const RenderOptions& options) {
     settings.bvh = options.bvh;
     settings.target_error = options.target_error;
     settings.time_limit = options.time_limit;
+    ProgressDisplay display(options.quiet);
+    const Stopwatch building;
+    settings.build_progress = [&](double share) {
+        display.update_building(share, building.seconds());
+        return !interrupted();
+    };
     if (!options.replay.empty()) return show_path(options, device, scene, settings);
     Renderer renderer(device, scene, settings);
+    display.finish();
     if (interrupted()) return nothing_rendered();
 
     if (!options.quiet) {
@@ -157,7 +165,6 @@ int run(const RenderOptions& options) {
         std::fprintf(stderr, "rendering %d x %d pixels, %s%d samples each\n", scene.film.crop_width,
                      scene.film.crop_height, open_end ? "at most " : "", scene.sample_count);
     }
-    ProgressDisplay display(options.quiet);
     const bool complete = renderer.render([&display](const Progress& progress) {
         display.update(progress);
         return !interrupted();
@@ -228,7 +235,13 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
     command->add_flag("-v,--verbose", options->verbose, "Print timings and counts as a table");
     command->callback([options, &chosen] {
         if (options->exr_path.empty() && options->replay.empty()) throw CLI::RequiredError("--output");
-        chosen = [options] { return run(*options); };
+        chosen = [options] {
+            try {
+                return run(*options);
+            } catch (const BuildStopped&) {
+                return nothing_rendered();
+            }
+        };
     });
 }
 

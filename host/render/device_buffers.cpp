@@ -25,14 +25,20 @@ void mark_masked(Bvh& bvh, const DeviceScene& scene) {
 
 }  // namespace
 
-Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> chosen) {
+Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> chosen, const BuildProgress& progress) {
     const BvhQuality by_size = scene.triangles.size() <= best_quality_triangles ? BvhQuality::best : BvhQuality::fast;
     const BvhQuality quality = chosen.value_or(by_size);
     const std::span<const TriangleVertices> triangles = scene.triangles;
     const std::span<const Bounds> analytics = scene.analytic_bounds;
+    // By triangles; one for each hierarchy, however small.
+    const double all = static_cast<double>(triangles.size() + scene.groups.size() + 1);
+    double done = 0.0;
     const auto build = [&](const GeometryRange& range, BvhQuality wanted, std::span<const Bounds> instances) {
+        const double part = static_cast<double>(range.triangle_count + 1);
+        const BuildProgress of_part = [&, before = done](double share) { return !progress || progress((before + part * share) / all); };
+        done += part;
         return build_bvh(triangles.subspan(range.first_triangle, range.triangle_count),
-                         analytics.subspan(range.first_analytic, range.analytic_count), wanted, threads, instances);
+                         analytics.subspan(range.first_analytic, range.analytic_count), wanted, threads, instances, of_part);
     };
     // Splits of instances would only multiply them.
     Bvh bvh = build(scene.world, scene.instances.empty() ? quality : BvhQuality::fast, scene.instance_bounds);

@@ -12,7 +12,8 @@
 namespace wavelobe {
 
 // Writes the roots of the groups into the instances. Without a quality by the number of triangles.
-Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> quality = std::nullopt);
+Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> quality = std::nullopt,
+                    const BuildProgress& progress = {});
 
 class DeviceBuffers {
 public:

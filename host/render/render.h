@@ -51,6 +51,7 @@ struct RenderSettings {
     Estimator estimator = Estimator::mis;
     Sampler sampler = Sampler::sobol;
     std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
+    BuildProgress build_progress;   // told how far the hierarchy is; where it says false, Renderer throws BuildStopped
     bool always_hierarchy = false;  // even where testing all triangles is faster
     int walks_in_turn = 0;          // rays traced in turn; 0: by the size of the hierarchy
     SampleName replayed;            // with Driver::replay

@@ -77,7 +77,7 @@ struct TraversalData {
 
 // Builds what rays meet, and enters into the scene's features how they are traced.
 TraversalData build_traversal(DeviceScene& scene, int threads, const RenderSettings& settings) {
-    TraversalData data{build_scene_bvh(scene, threads, settings.bvh), {}};
+    TraversalData data{build_scene_bvh(scene, threads, settings.bvh, settings.build_progress), {}};
     scene.features.bvh_stack = traversal_stack(data.bvh.depth);
     // Rays that go in groups can be taken in turn (HAS_PACKETS of kernels/shapes/packet.h).
     const bool grouped = !scene.features.analytic && !scene.features.instances && !scene.features.masks;

@@ -282,5 +282,27 @@ TEST(FewTriangles, AreNoneOfLargeScenesAndOfManyOtherShapes) {
     EXPECT_TRUE(few(3).triangles.empty());
 }
 
+TEST_P(Hierarchy, TellsHowFarItIs) {
+    const Triangles triangles = triangle_soup(200000, 0.01F, 1.0F, {}, 3);
+    std::vector<double> shares;
+    build_bvh(triangles, {}, GetParam(), 2, {}, [&](double share) {
+        shares.push_back(share);
+        return true;
+    });
+    ASSERT_GT(shares.size(), 10U);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_GE(shares.front(), 0.0);
+    EXPECT_LT(shares.front(), 0.2);
+    EXPECT_GT(shares.back(), 0.9);
+    EXPECT_LE(shares.back(), 1.0);
+}
+
+TEST_P(Hierarchy, StopsWhenAsked) {
+    const Triangles triangles = triangle_soup(200000, 0.01F, 1.0F, {}, 3);
+    double last = 0.0;
+    EXPECT_THROW(build_bvh(triangles, {}, GetParam(), 2, {}, [&](double share) { return (last = share) < 0.1; }), BuildStopped);
+    EXPECT_LT(last, 0.5);
+}
+
 }  // namespace
 }  // namespace wavelobe::test

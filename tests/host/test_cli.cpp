@@ -300,6 +300,7 @@ TEST(Format, Numbers) {
 TEST(Format, Progress) {
     EXPECT_EQ(progress_text({420, 0.42, 0.0}), " 42 %");
     EXPECT_EQ(progress_text({10000000, 0.25, 5.0}), " 25 %  2.00 M samples/s  0:15 left");
+    EXPECT_EQ(building_text(0.424), " 42 %  building the hierarchy");
 }
 
 TEST(Format, ClosingLineAndWarning) {
