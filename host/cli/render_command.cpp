@@ -149,13 +149,13 @@ int run(const RenderOptions& options) {
     settings.bvh = options.bvh;
     settings.target_error = options.target_error;
     settings.time_limit = options.time_limit;
+    if (!options.replay.empty()) return show_path(options, device, scene, settings);
     ProgressDisplay display(options.quiet);
     const Stopwatch building;
     settings.build_progress = [&](double share) {
         display.update_building(share, building.seconds());
         return !interrupted();
     };
-    if (!options.replay.empty()) return show_path(options, device, scene, settings);
     Renderer renderer(device, scene, settings);
     display.finish();
     if (interrupted()) return nothing_rendered();

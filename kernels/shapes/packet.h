@@ -15,10 +15,12 @@
 
 #define TEST_VALUES Float
 #define TEST_MASK Int
+#define TEST_FUSED madd
 #define TEST(name) name##_lanes
 #include "shapes/triangle_test.def"
 #undef TEST_VALUES
 #undef TEST_MASK
+#undef TEST_FUSED
 #undef TEST
 
 typedef struct {

@@ -37,10 +37,12 @@ INLINE RayShear ray_shear(const Ray *r) {
 
 #define TEST_VALUES float8
 #define TEST_MASK int8
+#define TEST_FUSED madd8
 #define TEST(name) name##8
 #include "shapes/triangle_test.def"
 #undef TEST_VALUES
 #undef TEST_MASK
+#undef TEST_FUSED
 #undef TEST
 
 INLINE Point block_corner(global const uchar *block, uint vertex, uint lane) {

@@ -3,13 +3,14 @@
 The kernels travel inside the executables: each break is made in a copy of the sources and built there.
 """
 
-import json
 import os
 import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
+
+from rows import append_rows
 
 ROOT = Path(__file__).resolve().parents[2]
 # Where a release build lies relative to its sources, so that a compiler cache knows the files.
@@ -103,9 +104,7 @@ def main():
     lines = [{"section": "Broken on purpose", "claim": "Broken formulas that no test notices", "unit": "formulas", "measured": missed,
               "bound": 0, "samples": len(rows) - left, "seconds": sum(r[3] for r in rows), "worst": f"{left} not tried" if left else "", "holds": missed == 0, "test": "mutate.py"},
              {"section": "Broken on purpose", "table": "What noticed", "columns": ["broken", "file", "noticed first by", "s"], "rows": rows}]
-    if "WAVELOBE_VERIFY_ROWS" in os.environ:
-        with open(os.environ["WAVELOBE_VERIFY_ROWS"], "a", encoding="utf-8") as out:
-            out.writelines(json.dumps(line) + "\n" for line in lines)
+    append_rows(lines)
     return 1 if missed else 0
 
 

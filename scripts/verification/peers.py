@@ -8,13 +8,14 @@ that of one renderer's mean picture against the other's, over what the two varia
 load are named.
 """
 
-import json
 import os
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
+
+from rows import append_rows
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from common import DATA, ROOT, WORK, comparable_scene, run_wavelobe, scene_name  # noqa: E402
@@ -148,9 +149,7 @@ def main():
         for row in found:
             print(f"{row['claim']}: {row['measured']:.3g}, bound {row['bound']:g} ({row['worst']})", flush=True)
         rows += found
-    if "WAVELOBE_VERIFY_ROWS" in os.environ:
-        with open(os.environ["WAVELOBE_VERIFY_ROWS"], "a", encoding="utf-8") as out:
-            out.writelines(json.dumps(row) + "\n" for row in rows)
+    append_rows(rows)
     return 0 if all(row["holds"] for row in rows) else 1
 
 

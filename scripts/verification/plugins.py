@@ -10,7 +10,6 @@ line a case; those that Mitsuba cannot load are named. Fails if any case differs
 
 import contextlib
 import functools
-import json
 import os
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from plugin_data import write_all
 import plugin_cases
 import plugin_differences
 import plugin_materials
+from rows import append_rows
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 from common import ROOT, WAVELOBE  # noqa: E402
@@ -216,9 +216,7 @@ def main():
     rows = [row(group, len(found), [t for t, bad, _ in found if bad], found[-1][2] - start[group]) for group, found in groups.items()]
     differing = sum(r["measured"] for r in rows)
     print(f"{sum(map(len, groups.values()))} cases compared, {differing} differ; {refused} not loaded, {late} without time left")
-    if "WAVELOBE_VERIFY_ROWS" in os.environ:
-        with open(os.environ["WAVELOBE_VERIFY_ROWS"], "a", encoding="utf-8") as out:
-            out.writelines(json.dumps(r) + "\n" for r in rows)
+    append_rows(rows)
     return 1 if differing else 0
 
 
