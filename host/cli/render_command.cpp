@@ -41,6 +41,7 @@ struct RenderOptions {
     double target_error = 0.0;  // 0: none
     double time_limit = 0.0;    // 0: none
     std::string device;
+    bool smooth_terminator = false;
     bool quiet = false;
     bool verbose = false;
 };
@@ -149,6 +150,7 @@ int run(const RenderOptions& options) {
     settings.bvh = options.bvh;
     settings.target_error = options.target_error;
     settings.time_limit = options.time_limit;
+    settings.smooth_terminator = options.smooth_terminator;
     if (!options.replay.empty()) return show_path(options, device, scene, settings);
     ProgressDisplay display(options.quiet);
     const Stopwatch building;
@@ -231,6 +233,8 @@ void add_render_command(CLI::App& program, Chosen& chosen) {
         ->transform(CLI::CheckedTransformer(bvh_names, CLI::ignore_case));
     add("--driver", options->driver, "NAME", "How stages are run: one-kernel, or staged (a launch each; slower)")
         ->transform(CLI::CheckedTransformer(driver_names, CLI::ignore_case));
+    command->add_flag("--smooth-terminator", options->smooth_terminator,
+                      "Coarse meshes with smooth normals do not shade themselves in steps (other pictures than Mitsuba's there)");
     command->add_flag("-q,--quiet", options->quiet, "Print nothing but the warnings of a faulty picture, and errors");
     command->add_flag("-v,--verbose", options->verbose, "Print timings and counts as a table");
     command->callback([options, &chosen] {

@@ -41,6 +41,7 @@ struct FeatureSet {
     bool textures = false;           // materials
     bool textured_emitters = false;
     bool smooth_normals = false;
+    bool smooth_terminator = false;  // light leaves the curved surface that they stand for
     bool uvs = false;
     bool second_uvs = false;         // some texture uses the second set of coordinates
     bool vertex_colors = false;

@@ -31,6 +31,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURES", f.textures);
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
+    out.define("HAS_SMOOTH_TERMINATOR", f.smooth_terminator);
     out.define("HAS_UVS", f.uvs);
     out.define("HAS_SECOND_UVS", f.second_uvs);
     out.define("HAS_VERTEX_COLORS", f.vertex_colors);

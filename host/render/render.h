@@ -50,6 +50,7 @@ struct RenderSettings {
     double time_limit = 0.0;    // seconds of rendering; 0: none
     Estimator estimator = Estimator::mis;
     Sampler sampler = Sampler::sobol;
+    bool smooth_terminator = false;  // light leaves the curved surface that smooth normals stand for (kernels/shapes/smooth_terminator.h)
     std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
     BuildProgress build_progress;   // told how far the hierarchy is; where it says false, Renderer throws BuildStopped
     bool always_hierarchy = false;  // even where testing all triangles is faster

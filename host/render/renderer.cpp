@@ -66,6 +66,7 @@ DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
     data.parameters.seed = settings.seed;
     data.parameters.layer_film_step = layer_film_step(settings);
     data.features.independent_samples = settings.sampler == Sampler::independent;
+    data.features.smooth_terminator = settings.smooth_terminator && data.features.smooth_normals;
     data.features.error_estimate = settings.target_error > 0.0;
     return data;
 }

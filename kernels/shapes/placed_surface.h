@@ -14,6 +14,10 @@ INLINE void place_surface(SurfaceView s, UInt instance, Surface *out) {
     out->error = select3(m.placed, error, out->error);
     out->normal = select3(m.placed, normal, out->normal);
     out->frame.n = select3(m.placed, n, out->frame.n);
+#if HAS_SMOOTH_TERMINATOR
+    out->rise.front = select3(m.placed, instance_vector(&m, out->rise.front), out->rise.front);
+    out->rise.behind = select3(m.placed, instance_vector(&m, out->rise.behind), out->rise.behind);
+#endif
 #if HAS_TANGENTS
     out->dp_du = select3(m.placed, instance_vector(&m, out->dp_du), out->dp_du);
     out->dp_dv = select3(m.placed, instance_vector(&m, out->dp_dv), out->dp_dv);

@@ -18,6 +18,9 @@
 #if HAS_INSTANCES
 #include "shapes/instance.h"
 #endif
+#if HAS_SMOOTH_TERMINATOR
+#include "shapes/smooth_terminator.h"
+#endif
 
 // The buffers that describe surfaces. Kernels take SURFACE_PARAMETERS and write SURFACE_VIEW.
 typedef struct {
@@ -106,6 +109,9 @@ typedef struct {
 #if HAS_COAT_NORMALS
     Frame unmapped; // the frame before it was turned and tilted
 #endif
+#if HAS_SMOOTH_TERMINATOR
+    Rise rise;      // front: on the side the path came from, once that is known
+#endif
     Float u, v;    // texture coordinates
 #if HAS_SECOND_UVS
     Float second_u, second_v;
@@ -188,6 +194,9 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Vec3 e1 = sub(b, a), e2 = sub(c, a);
     out->normal = normalize_any_scale(cross3(e1, e2));
     out->frame.n = out->normal;
+#if HAS_SMOOTH_TERMINATOR
+    out->rise = no_rise();
+#endif
 #if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
     UInt triangle = out->primitive - first_primitive;
 #endif
@@ -196,10 +205,16 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Int smooth = first_normal != (UInt)WAVELOBE_NONE;
     if (any_lane(smooth)) {
         UInt at = SELECT(smooth, first_normal + triangle * NORMAL_WORDS, (UInt)0u);
-        Vec3 shading = interpolate(gather_vec3(s.normals, at), gather_vec3(s.normals + 3, at),
-                                   gather_vec3(s.normals + 6, at), wa, wb, wc);
+        Vec3 na = gather_vec3(s.normals, at), nb = gather_vec3(s.normals + 3, at), nc = gather_vec3(s.normals + 6, at);
+        Vec3 shading = interpolate(na, nb, nc, wa, wb, wc);
         Float square = length_squared(shading);
         out->frame.n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), out->normal);
+#if HAS_SMOOTH_TERMINATOR
+        add_corner_rise(&out->rise, out->position, a, na, SELECT(smooth, wa, ZERO));
+        add_corner_rise(&out->rise, out->position, b, nb, SELECT(smooth, wb, ZERO));
+        add_corner_rise(&out->rise, out->position, c, nc, SELECT(smooth, wc, ZERO));
+        out->rise = rise_above(out->rise, out->normal, out->frame.n);
+#endif
     }
 #endif
 #if HAS_VERTEX_COLORS
@@ -258,6 +273,10 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     out->color = select3(analytic, vec3_all(ONE), out->color);
 #endif
     out->frame.n = select3(analytic, h.normal, out->frame.n);
+#if HAS_SMOOTH_TERMINATOR
+    out->rise.front = select3(analytic, vec3_all(ZERO), out->rise.front);
+    out->rise.behind = select3(analytic, vec3_all(ZERO), out->rise.behind);
+#endif
 #if HAS_TANGENTS
     out->dp_du = select3(analytic, h.dp_du, out->dp_du);
     out->dp_dv = select3(analytic, h.dp_dv, out->dp_dv);
@@ -280,6 +299,9 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     Vec3 back_along = negate(p->direction);
     out->wi = to_local(out->frame, back_along);
     Int behind = out->wi.z < 0.0f;
+#if HAS_SMOOTH_TERMINATOR
+    out->rise = turned_rise(out->rise, behind);
+#endif
     UInt front = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
 #if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);

@@ -72,6 +72,19 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
 }
 #endif
 
+INLINE Int transmits(SurfaceView view, const Surface *surface) {
+    UInt known = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
+    return (GATHER_UINT_FIELD(view.materials, Material, known, flags) & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u;
+}
+
+#if HAS_SMOOTH_TERMINATOR
+// Light leaves the curved surface that the normals stand for; what is transmitted leaves the facet, above which there is none.
+INLINE void leave_curved_surface(SurfaceView view, Surface *surface) {
+    Vec3 rise = select3(transmits(view, surface), vec3_all(ZERO), surface->rise.front);
+    raise_point(rise, &surface->position, &surface->error);
+}
+#endif
+
 // A direction from the lobe of the queue's class.
 INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId sample, UInt depth, Vec3 wi) {
     Float u1, u2, u3 = ZERO;
@@ -112,9 +125,7 @@ INLINE ReceiverCode surface_receiver(SurfaceView view, const Surface *surface, c
     code.lobe = surface_lobe(surface, lobes);
 #endif
 #if HAS_TRANSMISSION
-    UInt known = SELECT(surface->material == (UInt)WAVELOBE_NONE, (UInt)0u, surface->material);
-    UInt flags = GATHER_UINT_FIELD(view.materials, Material, known, flags);
-    code.normal = SELECT((flags & (UInt)MATERIAL_TRANSMISSIVE) != (UInt)0u, (UInt)RECEIVER_ANY, code.normal);
+    code.normal = SELECT(transmits(view, surface), (UInt)RECEIVER_ANY, code.normal);
 #endif
     return code;
 }
@@ -132,6 +143,9 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         Surface surface = load_scattering_surface(scene, &path, sample);
         MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);
+#if HAS_SMOOTH_TERMINATOR
+        leave_curved_surface(scene->surfaces, &surface);
+#endif
 #if HAS_LIGHT_TREE
         ReceiverCode receiver = surface_receiver(scene->surfaces, &surface, &lobes);
 #endif
