@@ -5,6 +5,7 @@
 // and gains nothing; what is black inside loses them.
 #include <algorithm>
 
+#include "support/many_features.h"
 #include "support/render.h"
 #include "support/triangle_meshes.h"
 #include "support/verification.h"
@@ -113,6 +114,14 @@ TEST(Terminator, CoarseBallsAreLitLikeRoundOnes) {
     claim.at_most(0.001);
     write_report_table("Numerical stability", "Where coarse balls with smooth normals, lit from the side, are less than half as bright as a round one",
                        {"triangles", "as the facets are", "with --smooth-terminator"}, rows);
+}
+
+TEST(Terminator, IsSmoothBesideEverythingElse) {
+    RenderSettings settings;
+    settings.samples_per_pixel = 4;
+    settings.smooth_terminator = true;
+    const std::vector<std::string> features = render(many_features_scene(33, 21), settings).stats.features;
+    EXPECT_NE(std::find(features.begin(), features.end(), "smooth_terminator"), features.end());
 }
 
 }  // namespace
