@@ -62,7 +62,7 @@ struct PictureChannel {
 
 struct Integrator {
     int max_depth = -1;  // path edges seen from the camera; -1: unlimited, 1: emitters alone
-    int rr_depth = 5;    // Russian roulette from this depth on
+    int rr_depth = 1;    // Russian roulette from this depth on (kernels/stages/continue_path.h)
     bool hide_emitters = false;
     bool environment_covers = true;  // where nothing but the environment is seen, the picture is covered
     bool radiance = true;  // false: the channels are all there is, the colours stay black

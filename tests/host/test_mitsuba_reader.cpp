@@ -19,7 +19,7 @@ TEST(MitsubaReader, EmptySceneHasTheDefaults) {
     EXPECT_FLOAT_EQ(scene.film.filter.radius, 2.0F);
     EXPECT_EQ(scene.sample_count, 4);
     EXPECT_EQ(scene.integrator.max_depth, -1);
-    EXPECT_EQ(scene.integrator.rr_depth, 5);
+    EXPECT_EQ(scene.integrator.rr_depth, 1);
     EXPECT_FALSE(scene.integrator.hide_emitters);
     EXPECT_FLOAT_EQ(scene.camera.near_clip, 0.01F);
     EXPECT_FLOAT_EQ(scene.camera.far_clip, 10000.0F);

@@ -96,31 +96,51 @@ TEST_P(ScatterDelta, GlassReflectsOrRefracts) {
     }
 }
 
-// From `rr_depth` vertices on a path survives with its throughput's chance, and is made brighter by it.
+// From `rr_depth` vertices on a path survives with its throughput's share of the threshold, and is made brighter by it.
 TEST_P(ScatterDelta, RouletteKeepsTheMean) {
     Scene scene = surface_scene(Conductor{}, false);
     scene.integrator.rr_depth = 3;
     StageBench bench(scene, GetParam(), 256);
     std::vector<TestPath> paths = arriving(bench, {1, 0.5F, -2}, 256);
+    constexpr std::uint32_t deep = 64;  // vertices of the last 64 paths
     for (std::uint32_t i = 0; i < 256; ++i) {
-        paths[i].throughput = {0.25F, 0.125F, 0.5F};
-        paths[i].depth = i < 128 ? 1 : 2;  // the second or the third vertex
         paths[i].id = i;
+        paths[i].depth = i < 64 ? 1 : i < 192 ? 2 : deep;  // the second vertex or the third, or a late one
+        paths[i].throughput = i < 192 ? glm::vec3{0.1F, 0.05F, 0.2F} : glm::vec3{0.95F, 0.5F, 1.0F};
     }
     bench.fill(QUEUE_DELTA, paths);
     bench.run("scatter_delta");
-    std::uint32_t played = 0;
+    std::uint32_t spared = 0, dim = 0, bright = 0;
     for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
         const TestPath p = bench.path(QUEUE_RAYS, i);
-        if (p.id < 128) {
-            expect_close(p.throughput, {0.25, 0.125, 0.5});
+        if (p.id < 64) {
+            ++spared;
+            expect_close(p.throughput, {0.1, 0.05, 0.2});
+        } else if (p.id < 192) {
+            ++dim;
+            expect_close(p.throughput, {0.2, 0.1, 0.4});
         } else {
-            ++played;
-            expect_close(p.throughput, {0.5, 0.25, 1.0});
+            ++bright;
+            expect_close(p.throughput, glm::dvec3(0.95, 0.5, 1.0) / 0.95);
         }
     }
-    EXPECT_EQ(bench.header().count[QUEUE_RAYS] - played, 128U);
-    EXPECT_NEAR(played, 64.0, 4.5 * std::sqrt(128 * 0.25));
+    EXPECT_EQ(spared, 64U);
+    EXPECT_NEAR(dim, 64.0, 4.5 * std::sqrt(128 * 0.25));
+    EXPECT_NEAR(bright, 64 * 0.95, 4.5 * std::sqrt(64 * 0.95 * 0.05));
+    EXPECT_LT(bright, 64U);
+}
+
+// What is bright enough does not play.
+TEST_P(ScatterDelta, RouletteSparesTheBright) {
+    Scene scene = surface_scene(Conductor{}, false);
+    scene.integrator.rr_depth = 1;
+    StageBench bench(scene, GetParam(), 256);
+    std::vector<TestPath> paths = arriving(bench, {1, 0.5F, -2}, 256);
+    for (TestPath& p : paths) p.throughput = {0.1F, 0.4F, 0.2F};
+    bench.fill(QUEUE_DELTA, paths);
+    bench.run("scatter_delta");
+    ASSERT_EQ(bench.header().count[QUEUE_RAYS], 256U);
+    for (std::uint32_t i = 0; i < 256; ++i) expect_close(bench.path(QUEUE_RAYS, i).throughput, {0.1, 0.4, 0.2});
 }
 
 WAVELOBE_AT_EACH_WIDTH(ScatterDelta);

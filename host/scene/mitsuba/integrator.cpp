@@ -18,7 +18,7 @@ Integrator read_integrator_object(Context& context, const Object& object);
 Integrator read_path(Query& query) {
     Integrator integrator;
     integrator.max_depth = static_cast<int>(query.integer("max_depth", -1, -1, int_max));
-    integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 5, 1, int_max));
+    integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 1, 1, int_max));
     return integrator;
 }
 
@@ -26,7 +26,7 @@ Integrator read_path(Query& query) {
 Integrator read_replayed(Query& query) {
     Integrator integrator;
     integrator.max_depth = static_cast<int>(query.integer("max_depth", 6, -1, int_max));
-    integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 5, 1, int_max));
+    integrator.rr_depth = static_cast<int>(query.integer("rr_depth", 1, 1, int_max));
     integrator.environment_covers = false;
     query.accept({"guiding", "guiding_proj", "guiding_rounds", "project_seed", "sppc", "sppi", "sppp"});
     return integrator;
