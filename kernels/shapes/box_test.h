@@ -24,6 +24,8 @@ typedef struct {
 #define NODE_ROW_BYTES 32u
 #define NODE_CHILD_BYTES 192u
 #define FAR_WIDENING (1.0f + 2.0f * GAMMA(3))
+// Boxes are searched a little beyond the limit and the nearest hit: a triangle's distance may round to less than that of its box.
+#define REACH(t) ((t) * FAR_WIDENING)
 
 // A component of a unit direction this small moves a ray by less than the smallest step of any coordinate; keeping its
 // reciprocal finite avoids 0 * infinity for origins that lie on a box.

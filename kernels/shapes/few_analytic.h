@@ -30,7 +30,7 @@ INLINE void box_rays(Vec3 origin, Vec3 direction, BoxedRays *r KEY_PARAMETER) {
 
 // Bits of the rays that meet the box of `a` before `limit`; as intersect_children tests one ray.
 INLINE uint rays_in_box(global const struct FewAnalytic *a, const BoxedRays *r, Float limit) {
-    Float enter = ZERO, leave = limit;
+    Float enter = ZERO, leave = REACH(limit);
 #define WITHIN_SLAB(axis, k)                                                                                  \
     {                                                                                                         \
         Float lower = ((Float)a->lower[k] - r->origin.axis) * r->reciprocal.axis;                             \

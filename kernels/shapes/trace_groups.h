@@ -139,15 +139,15 @@ INLINE uint any_for_packet(Geometry g, uint index, uint rays, const Packet *p, c
     return blocked;
 }
 
-// Pushes the children of a node that rays of the packet meet.
-INLINE void push_any_children(Geometry g, uint index, uint rays, const Packet *p, Float limit, float farthest, PacketStack *stack) {
+// Pushes the children of a node that rays of the packet meet within their reach, the farthest of which is `farthest`.
+INLINE void push_any_children(Geometry g, uint index, uint rays, const Packet *p, Float reach, float farthest, PacketStack *stack) {
     global const uchar *node = g.nodes + ((size_t)index << NODE_SHIFT);
     global const uint *child = (global const uint *)(node + NODE_CHILD_BYTES);
     float8 distance;
     uint mask = intersect_packet_children(node, p, farthest, &distance);
     while (mask) {
         POP_LOWEST_BIT(mask, i);
-        uint in = rays & rays_in_child(node, i, p, limit);
+        uint in = rays & rays_in_child(node, i, p, reach);
         fetch_ahead(g, child[i]);
         stack->key[stack->top] = child[i], stack->rays[stack->top] = (ushort)in;
         stack->top += in != 0u;
@@ -159,14 +159,14 @@ INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
     uint left = sound_rays(group, live), blocked = 0u;
     Float limit = LANES_OF(group->limit);
     // Hits at the limit itself do not count.
-    Float below = as_Float(as_UInt(limit) - (UInt)1u);
+    Float below = as_Float(as_UInt(limit) - (UInt)1u), reach = REACH(limit);
     PacketStack stack;
     while (left) {
         Packet p = make_packet(group, left, 1);
         int together = popcount(p.rays) >= LEAST_PACKET;
         uint current = 0u, rays = together ? p.rays : left;
         left &= ~rays;
-        float farthest = greatest_of(rays, limit);
+        float farthest = greatest_of(rays, reach);
         stack.key[0] = BVH_EMPTY;
         stack.top = 1u;
         while (current != BVH_EMPTY) {
@@ -175,7 +175,7 @@ INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
             } else if (current & BVH_LEAF) {
                 blocked |= any_for_packet(g, current & ~BVH_LEAF, rays, &p, group, below);
             } else {
-                push_any_children(g, current, rays, &p, limit, farthest, &stack);
+                push_any_children(g, current, rays, &p, reach, farthest, &stack);
             }
             do { // passing by what only blocked rays had left
                 stack.top--;

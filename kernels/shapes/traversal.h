@@ -142,9 +142,6 @@ INLINE int enter_instance(Geometry g, uint index, const Ray *world, Ray *inner, 
 }
 #endif
 
-// Boxes are searched a little beyond the nearest hit: a triangle's distance may round to less than that of its box.
-#define REACH(t) ((t) * FAR_WIDENING)
-
 // Pops what is not behind a hit at distance t. The sentinel's distance of 0 is below any limit: every hit has t > 0.
 INLINE uint pop_nearer(const ulong *stack, uint *top, float t) {
     ulong limit_key = (ulong)as_uint(REACH(t)) << 32, key;
@@ -267,7 +264,7 @@ INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
             global const uchar *node = g.nodes + ((size_t)current << NODE_SHIFT);
             global const uint *child = (global const uint *)(node + NODE_CHILD_BYTES);
             float8 distance;
-            uint mask = intersect_children(node, &box, r->limit, &distance);
+            uint mask = intersect_children(node, &box, REACH(r->limit), &distance);
             if (UNLIKELY(mask == 0u)) {
                 current = stack[--top];
                 continue;

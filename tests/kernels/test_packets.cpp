@@ -157,6 +157,30 @@ TEST(Packets, OnEdgesAndVertices) {
     for (const TestHit& hit : grouped().trace(bvh, rays)) ASSERT_TRUE(hit.slot != HIT_NONE && hit.any == 1U);
 }
 
+// Limits one float beyond what is hit, and at it: boxes that end in the plane of a triangle must not cost the hit.
+TEST(Packets, SeeUpToTheLastFloatBeforeTheLimit) {
+    const Bvh bvh = build_bvh(cube_mesh(12).triangles(), {}, BvhQuality::split, 1);
+    Generator random(8);
+    for (TraversalProbe* probe : {&alone(), &grouped()}) {
+        std::vector<TestRay> rays;
+        for (int i = 0; i < 1000; ++i) {
+            const glm::vec3 origin = uniform_in_cube(random, 0.9F), target = uniform_in_cube(random, 1.0F);
+            for (int k = 0; k < 16; ++k) rays.push_back(ray_to(origin, target + uniform_in_cube(random, 0.01F)));
+        }
+        const std::vector<TestHit> hits = probe->trace(bvh, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) rays[i].limit = std::nextafter(hits[i].t, infinity);
+        const std::vector<TestHit> beyond = probe->trace(bvh, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) rays[i].limit = hits[i].t;
+        const std::vector<TestHit> at = probe->trace(bvh, rays);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_EQ(beyond[i].any, 1U) << "ray " << i;
+            ASSERT_EQ(beyond[i].t, hits[i].t) << "ray " << i;
+            ASSERT_EQ(at[i].any, 0U) << "ray " << i;
+            ASSERT_EQ(at[i].slot, HIT_NONE) << "ray " << i;
+        }
+    }
+}
+
 TEST(Packets, RaysThatAreNotNumbersMissAndHarmNoNeighbour) {
     const Bvh bvh = build_bvh(sphere_mesh(4, 1.0F, {}).triangles(), {}, BvhQuality::split, 1);
     std::vector<TestRay> rays = bundles(500, 0.02F, 1.0F, {});
