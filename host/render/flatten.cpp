@@ -61,7 +61,7 @@ public:
                 if (LightFlattener::has_place(emitter) == placed) lights_.add_emitter(emitter, radius);
             }
         }
-        lights_.finish();
+        lights_.finish(radius);
         set_parameters();
         out_.filter_table = build_filter_table(scene_.film.filter);
         flatten_layers(scene_, out_);

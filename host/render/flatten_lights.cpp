@@ -138,11 +138,28 @@ void LightFlattener::add_unsampled(const AreaEmitter& emitter, std::size_t shape
     out_.features.light_kinds |= 1U << LIGHT_TRIANGLE;
 }
 
-void LightFlattener::finish() {
+// Triangles that are large in their scene are sampled by solid angle; of small ones the density over area is as even, and costs less.
+void LightFlattener::widen_triangles(double radius) {
+    constexpr double least_share = 0.1;  // of the longest edge: from half the radius away seen under some 0.02 sr
+    bool small = false;
+    for (Light& light : out_.lights) {
+        if (light.kind != LIGHT_TRIANGLE) continue;
+        const glm::vec3 e1(light.edge1.x, light.edge1.y, light.edge1.z), e2(light.edge2.x, light.edge2.y, light.edge2.z);
+        const float longest = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
+        const bool wide = static_cast<double>(longest) > least_share * radius;
+        if (wide) light.kind = LIGHT_SPHERICAL_TRIANGLE;
+        out_.features.light_kinds |= 1U << light.kind;
+        small = small || !wide;
+    }
+    if (!small && unsampled_.empty()) out_.features.light_kinds &= ~(1U << LIGHT_TRIANGLE);
+}
+
+void LightFlattener::finish(double radius) {
     // The stages of lights want one.
     if (out_.lights.empty() && !unsampled_.empty()) add(PointEmitter{glm::vec3(0.0F), Rgb(0.0F)});
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
+    widen_triangles(radius);
     share_out();
     if (bounds_.size() > 1) build_tree();
     for (const auto& [shape, radiance] : unsampled_) {

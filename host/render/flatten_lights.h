@@ -30,8 +30,8 @@ public:
                       const Bounds& bounds);
     // Those without a shape; `radius` is that of the scene's bounding sphere. Black ones are left out.
     void add_emitter(const Emitter& emitter, double radius);
-    // How lights are chosen: those with a place by a tree, if there are several.
-    void finish();
+    // How lights are sampled and chosen: those with a place by a tree, if there are several. `radius` is that of the scene.
+    void finish(double radius);
     // Not at infinity.
     static bool has_place(const Emitter& emitter);
     // How many have one; they come first if add_emitter was called for them first.
@@ -52,6 +52,7 @@ private:
     void set_range(Light& light, float range);
     void build_tree();
     void share_out();
+    void widen_triangles(double radius);
     void add_environment_map(const EnvironmentMap& e, double radius);
     void add(const ConstantEmitter& e);
     void add(const PointEmitter& e);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "support/light_models.h"
+#include "render/flatten.h"
 #include "support/render.h"
 
 namespace wavelobe::test {
@@ -125,6 +126,16 @@ TEST(FloorUnder, Triangle) {
     make_emitter(add_triangle(scene, corners[0], corners[1], corners[2], add_diffuse(scene, Rgb{0})), radiance);
     expect_closed_form(scene, 64,
                 under_polygon({glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])}));
+}
+
+// So large that it is sampled by solid angle.
+TEST(FloorUnder, WideTriangle) {
+    Scene scene = floor_scene();
+    const glm::vec3 corners[3] = {{-8, 4, -8}, {8, 3.5F, -8}, {0, 5, 9}};
+    make_emitter(add_triangle(scene, corners[0], corners[1], corners[2], add_diffuse(scene, Rgb{0})), radiance);
+    const std::vector<std::string> names = flatten_scene(scene).features.names();
+    EXPECT_NE(std::find(names.begin(), names.end(), "light:spherical_triangle"), names.end());
+    expect_closed_form(scene, 64, under_polygon({glm::dvec3(corners[0]), glm::dvec3(corners[1]), glm::dvec3(corners[2])}));
 }
 
 // Half of it lies below the floor and is hidden.

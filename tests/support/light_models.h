@@ -279,6 +279,7 @@ inline LightModels light_models(const std::string& name) {
     LightModels all;
     LightBuffers& buffers = all.buffers;
     if (name == "triangle") all.models = planar_models(buffers, true);
+    if (name == "spherical_triangle") all.models = planar_models(buffers, true);
     if (name == "parallelogram") all.models = planar_models(buffers, false);
     if (name == "rectangle") all.models = planar_models(buffers, false, true);
     if (name == "sphere") all.models = sphere_models(buffers);
