@@ -58,7 +58,7 @@ public:
         // Lights with a place go before those at infinity.
         for (const bool placed : {true, false}) {
             for (const Emitter& emitter : scene_.emitters) {
-                if (LightFlattener::has_place(emitter) == placed) lights_.add_emitter(emitter, radius);
+                if (LightFlattener::has_place(emitter) == placed) lights_.add_emitter(emitter);
             }
         }
         lights_.finish(radius);

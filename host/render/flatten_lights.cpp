@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "tables/environment_table.h"
-#include "tables/light_power.h"
+#include "tables/luminance.h"
 
 namespace wavelobe {
 namespace {
@@ -27,6 +27,8 @@ void set_picture_ways(Light& light, const glm::mat4& to_world, double half_width
     light.edge2 = packed(glm::vec3(rows[0] / (along * half_width)));
     light.normal = packed(glm::vec3(rows[1] / (along * half_height)));
 }
+
+bool is_black(double luminance) { return !(luminance > 0.0); }
 
 LightBounds bounds_about(std::initializer_list<glm::vec3> points) {
     LightBounds b;
@@ -156,7 +158,7 @@ void LightFlattener::widen_triangles(double radius) {
 
 void LightFlattener::finish(double radius) {
     // The stages of lights want one.
-    if (out_.lights.empty() && !unsampled_.empty()) add(PointEmitter{glm::vec3(0.0F), Rgb(0.0F)});
+    if (out_.lights.empty() && !unsampled_.empty()) add_placed_light(light_of(LIGHT_POINT, {{}, WAVELOBE_NONE}), bounds_about({glm::vec3(0.0F)}));
     out_.features.light_count = static_cast<int>(out_.lights.size());
     if (out_.lights.empty()) return;
     widen_triangles(radius);
@@ -186,6 +188,7 @@ void LightFlattener::build_tree() {
 }
 
 void LightFlattener::add(const ConstantEmitter& e) {
+    if (is_black(luminance(e.radiance))) return;
     Environment environment{};
     environment.radiance = packed(e.radiance);
     environment.to_world = environment.to_object = affine(glm::mat4(1.0F));
@@ -194,10 +197,10 @@ void LightFlattener::add(const ConstantEmitter& e) {
     add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}));
 }
 
-void LightFlattener::add_environment_map(const EnvironmentMap& e, double radius) {
+void LightFlattener::add(const EnvironmentMap& e) {
     const Bitmap image = with_three_rows(e.image);
     EnvironmentTable table = build_environment_table(image, "envmap", out_.features.estimator != Estimator::light);
-    if (!(environment_power(static_cast<double>(e.scale) * table.luminance_integral, radius) > 0.0)) return;
+    if (is_black(static_cast<double>(e.scale) * table.luminance_integral)) return;
     Environment environment{};
     environment.to_world = affine(e.to_world);
     environment.to_object = affine(glm::mat4(glm::inverse(glm::dmat4(e.to_world))));
@@ -220,6 +223,7 @@ void LightFlattener::set_range(Light& light, float range) {
 }
 
 void LightFlattener::add(const PointEmitter& e) {
+    if (is_black(luminance(e.intensity))) return;
     Light light = light_of(LIGHT_POINT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(e.position);
     set_range(light, e.range);
@@ -231,6 +235,7 @@ void LightFlattener::add(const PointEmitter& e) {
 }
 
 void LightFlattener::add(const SpotEmitter& e) {
+    if (is_black(mean_luminance(Parameter{e.intensity, e.texture}))) return;
     Light light = light_of(LIGHT_SPOT, {packed(e.intensity), WAVELOBE_NONE});
     light.position = packed(glm::vec3(e.to_world[3]));
     light.edge1 = packed(glm::normalize(glm::vec3(e.to_world[2])));
@@ -253,6 +258,7 @@ void LightFlattener::add(const SpotEmitter& e) {
 }
 
 void LightFlattener::add(const ProjectorEmitter& e) {
+    if (is_black(static_cast<double>(e.scale) * mean_luminance(e.irradiance))) return;
     Light light = light_of(LIGHT_PROJECTOR, materials_.rgb(e.irradiance));
     out_.features.textured_emitters = out_.features.textured_emitters || e.irradiance.texture != nullptr;
     light.position = packed(glm::vec3(e.to_world[3]));
@@ -271,22 +277,14 @@ void LightFlattener::add(const ProjectorEmitter& e) {
 }
 
 void LightFlattener::add(const DirectionalEmitter& e) {
+    if (is_black(luminance(e.irradiance))) return;
     Light light = light_of(LIGHT_DIRECTIONAL, {packed(e.irradiance), WAVELOBE_NONE});
     light.edge1 = packed(e.direction);
     add_light(light);
 }
 
-void LightFlattener::add_emitter(const Emitter& emitter, double radius) {
-    if (const auto* map = std::get_if<EnvironmentMap>(&emitter)) {
-        add_environment_map(*map, radius);
-        return;
-    }
-    if (!(emitter_power(emitter, radius) > 0.0)) return;  // black: nothing it could add
-    std::visit(
-        [this](const auto& e) {
-            if constexpr (!std::is_same_v<std::decay_t<decltype(e)>, EnvironmentMap>) add(e);
-        },
-        emitter);
+void LightFlattener::add_emitter(const Emitter& emitter) {
+    std::visit([this](const auto& e) { add(e); }, emitter);
 }
 
 }  // namespace wavelobe

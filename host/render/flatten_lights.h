@@ -28,8 +28,8 @@ public:
     void add_unsampled(const AreaEmitter& emitter, std::size_t shape);
     void add_analytic(const AreaEmitter& emitter, LightIndex kind, std::uint32_t analytic, double area,
                       const Bounds& bounds);
-    // Those without a shape; `radius` is that of the scene's bounding sphere. Black ones are left out.
-    void add_emitter(const Emitter& emitter, double radius);
+    // Those without a shape. Black ones are left out. Throws InputError for a picture build_environment_table refuses.
+    void add_emitter(const Emitter& emitter);
     // How lights are sampled and chosen: those with a place by a tree, if there are several. `radius` is that of the scene.
     void finish(double radius);
     // Not at infinity.
@@ -53,7 +53,7 @@ private:
     void build_tree();
     void share_out();
     void widen_triangles(double radius);
-    void add_environment_map(const EnvironmentMap& e, double radius);
+    void add(const EnvironmentMap& e);
     void add(const ConstantEmitter& e);
     void add(const PointEmitter& e);
     void add(const SpotEmitter& e);

@@ -4,7 +4,7 @@
 
 #include "scene/fault.h"
 #include "tables/dielectric_surface.h"
-#include "tables/light_power.h"
+#include "tables/luminance.h"
 #include "tables/sheen_albedo.h"
 
 namespace wavelobe {

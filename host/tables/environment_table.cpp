@@ -7,7 +7,7 @@
 #include <span>
 
 #include "scene/fault.h"
-#include "tables/light_power.h"
+#include "tables/luminance.h"
 
 namespace wavelobe {
 namespace {

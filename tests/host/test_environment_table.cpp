@@ -9,7 +9,7 @@
 #include <random>
 
 #include "scene/fault.h"
-#include "tables/light_power.h"
+#include "tables/luminance.h"
 
 namespace wavelobe {
 namespace {
@@ -141,34 +141,6 @@ TEST(EnvironmentTable, RepeatsTheLastRowOfFlatPictures) {
     EXPECT_EQ(with_three_rows(random_picture(3, 4)).height, 4);
 }
 
-// ---- power ---------------------------------------------------------------------------------------------------
-
-TEST(LightPower, PointAndDirectional) {
-    const double y = luminance({1.0F, 2.0F, 3.0F});
-    EXPECT_NEAR(y, 0.212671 + 2 * 0.715160 + 3 * 0.072169, 1e-12);
-    EXPECT_NEAR(emitter_power(PointEmitter{.position = {}, .intensity = {1, 2, 3}}, 10.0), 4.0 * pi * y, 1e-9);
-    EXPECT_NEAR(emitter_power(DirectionalEmitter{.direction = {0, 0, 1}, .irradiance = {1, 2, 3}}, 10.0), 100.0 * pi * y, 1e-9);
-}
-
-TEST(LightPower, SpotIntegratesItsFalloff) {
-    for (auto [beam, cutoff] : {std::pair{15.0F, 20.0F}, {0.0F, 90.0F}, {20.0F, 20.0F}, {0.5F, 1.0F}, {80.0F, 170.0F}}) {
-        SpotEmitter spot;
-        spot.intensity = Rgb(1.0F);
-        spot.beam_width_degrees = beam;
-        spot.cutoff_degrees = cutoff;
-        // Midpoint rule over the polar angle, on each side of the beam's edge.
-        const double b = static_cast<double>(beam) * pi / 180.0;
-        const double c = static_cast<double>(cutoff) * pi / 180.0;
-        const int steps = 20000;
-        double integral = 0.0;
-        for (int i = 0; i < steps; ++i) {
-            const double share = (i + 0.5) / steps;
-            integral += 2.0 * pi / steps * (b * std::sin(b * share) + (c - b) * (1.0 - share) * std::sin(b + (c - b) * share));
-        }
-        EXPECT_NEAR(emitter_power(spot, 1.0), integral * luminance(Rgb(1.0F)), 1e-7 * integral) << beam << " " << cutoff;
-    }
-}
-
 // Cells follow what they have above the average over the sphere; an even picture stays as it is.
 TEST(EnvironmentTable, CompensatedLeavesOutWhatIsBelowAverage) {
     const Bitmap image = random_picture(16, 9);
@@ -186,17 +158,9 @@ TEST(EnvironmentTable, CompensatedLeavesOutWhatIsBelowAverage) {
     EXPECT_EQ(build_environment_table(even, {}, true).density, build_environment_table(even).density);
 }
 
-TEST(LightPower, EnvironmentsPassTheBoundingSphere) {
-    const double y = luminance(Rgb(2.0F));
-    const double expected = 4.0 * pi * pi * 9.0 * y;
-    EXPECT_NEAR(emitter_power(ConstantEmitter{Rgb(2.0F)}, 3.0), expected, 1e-9 * expected);
-    EnvironmentMap map;
-    map.image = picture(4, 1, [](int, int) { return Rgb(1.0F); });
-    map.scale = 2.0F;
-    EXPECT_NEAR(emitter_power(map, 3.0), expected, 1e-9 * expected);
-}
+TEST(Luminance, OfColours) { EXPECT_NEAR(luminance({1.0F, 2.0F, 3.0F}), 0.212671 + 2 * 0.715160 + 3 * 0.072169, 1e-12); }
 
-TEST(LightPower, TexturesCountWithTheirMeanLuminance) {
+TEST(Luminance, OfTexturesIsTheirMean) {
     Parameter radiance{Rgb(2.0F), nullptr};
     EXPECT_NEAR(mean_luminance(radiance), luminance(Rgb(2.0F)), 1e-9);
     auto texture = std::make_shared<Texture>();

@@ -16,8 +16,6 @@ std::string after(Change change) {
     return texts(file.faults());
 }
 
-#define EXPECT_FAULT(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
 TEST(GltfFaults, SoundFileHasNone) { EXPECT_EQ(after([](GltfFile&) {}), ""); }
 
 TEST(GltfFaults, References) {

@@ -28,8 +28,6 @@ std::string after(Change change) {
 
 Json& attributes_of(GltfFile& f) { return f.json["meshes"][0]["primitives"][0]["attributes"]; }
 
-#define EXPECT_FAULT(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
 TEST(GltfValidity, SoundFileHasNone) { EXPECT_EQ(after([](GltfFile&) {}), ""); }
 
 TEST(GltfValidity, Extensions) {

@@ -15,6 +15,8 @@ namespace wavelobe::test {
 
 using Json = nlohmann::json;
 
+#define EXPECT_FAULT(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
 inline std::string base64(const std::string& bytes) {
     const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string out;

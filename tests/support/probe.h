@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,12 +28,13 @@ inline Device& device() {
 }
 
 // Under an interpreter that looks for memory errors (scripts/memcheck) a few of the work-items do. Values are wrong then.
-inline bool values_are_judged() { return std::getenv("WAVELOBE_PROBE_ITEMS") == nullptr; }
-
-inline std::size_t items_to_run(std::size_t items) {
+inline std::optional<std::size_t> most_items() {
     const char* most = std::getenv("WAVELOBE_PROBE_ITEMS");
-    return most == nullptr ? items : std::min<std::size_t>(items, std::strtoul(most, nullptr, 10));
+    return most == nullptr ? std::nullopt : std::optional<std::size_t>(std::strtoul(most, nullptr, 10));
 }
+
+inline bool values_are_judged() { return !most_items(); }
+inline std::size_t items_to_run(std::size_t items) { return std::min(items, most_items().value_or(items)); }
 
 struct ProbeOptions {
     int lanes = 16;
