@@ -183,7 +183,7 @@ def scene_source(text):
 def arguments():
     cores = len(os.sched_getaffinity(0))
     parser = argparse.ArgumentParser(prog="scripts/benchmark error", description=__doc__.splitlines()[0])
-    parser.add_argument("--peers", default="mitsuba", help="comma-separated: mitsuba, mitsuba-VARIANT:SAMPLER, cycles; '' for none")
+    parser.add_argument("--peers", default="mitsuba", help="comma-separated: mitsuba, mitsuba-VARIANT:SAMPLER, cycles, luxcore; '' for none")
     parser.add_argument("--scenes", nargs="+", default=SCENES, help=f"Mitsuba 3 XML files, or of {', '.join(GENERATED)}")
     parser.add_argument("--threads", type=int, default=cores)
     parser.add_argument("--size", type=int, default=256, help="width and height of the pictures")

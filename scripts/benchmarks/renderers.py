@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from common import comparable_scene, pin, run_wavelobe
+from luxcore_peer import environment as luxcore_peer_environment
 from scene_facts import Missing
 
 
@@ -50,7 +51,8 @@ class Worker:
         self.picture = comparable_scene(source, size, 1).with_suffix(f".{self.name}.npy")
         command = [sys.executable, __file__, kind, setting, source, str(size), str(threads), self.picture]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-                                        preexec_fn=lambda: pin(threads))
+                                        preexec_fn=lambda: pin(threads),
+                                        env={**os.environ, **(luxcore_peer_environment() if kind == "luxcore" else {})})
         hello = self.answer()
         if "missing" in hello:
             self.close()
@@ -113,7 +115,13 @@ def cycles_peer(setting, source, size, threads):
     return CyclesPeer(comparable_scene(source, size, 1), threads)
 
 
-PEERS = {"mitsuba": MitsubaPeer, "cycles": cycles_peer}
+def luxcore_peer(setting, source, size, threads):
+    from luxcore_peer import LuxCorePeer
+
+    return LuxCorePeer(comparable_scene(source, size, 1), threads)
+
+
+PEERS = {"mitsuba": MitsubaPeer, "cycles": cycles_peer, "luxcore": luxcore_peer}
 
 
 def peer_settings(names):
@@ -143,7 +151,7 @@ def worker(kind, setting, source, size, threads, picture):
     try:
         peer = PEERS[kind](setting, Path(source), int(size), int(threads))
     except ImportError as error:
-        say(missing=f"{error}; build/venv/bin/pip install brings mitsuba, and bpy for Cycles")
+        say(missing=f"{error}; build/venv/bin/pip install brings mitsuba, bpy for Cycles and pyluxcore for LuxCore")
         return
     except Missing as error:
         say(missing=str(error))
