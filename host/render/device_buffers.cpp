@@ -1,5 +1,6 @@
 #include "render/device_buffers.h"
 
+#include "render/flatten_caustics.h"
 #include "shared/block.h"
 
 namespace wavelobe {
@@ -100,12 +101,24 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     add("filter_table", scene.filter_table);
     add("parameters", std::vector<RenderParameters>{scene.parameters});
     const std::size_t pixels = std::size_t{scene.parameters.window_width} * scene.parameters.window_height;
+    if (scene.features.caustics) add_caustics(scene);
     add_zeros<FilmPixel>("film", pixels * (scene.features.error_estimate ? 2 : 1));
     if (scene.features.layers != 0) {
         add_zeros<double>("layer_film", pixels * scene.features.layer_channels());
         add("layer_shapes", scene.layer_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.layer_shapes);
     }
     if (scene.features.moments) add_zeros<double>("moment_film", pixels * MOMENT_CHANNELS);
+}
+
+void DeviceBuffers::add_caustics(const DeviceScene& scene) {
+    const std::size_t cells = caustic_cells(scene.caustic_grid);
+    add("caustic_targets", scene.caustic_targets);
+    add("caustic_grid", std::vector<CausticGrid>{scene.caustic_grid});
+    add_zeros<std::uint32_t>("caustic_counts", cells);
+    add_zeros<std::uint32_t>("caustic_cells", cells);
+    add_zeros<std::uint64_t>("caustic_sums", CAUSTIC_MAPS * CAUSTIC_BINS);
+    add_zeros<std::uint64_t>("caustic_squares", CAUSTIC_MAPS);
+    add_zeros<float>("caustic_maps", CAUSTIC_MAPS * CAUSTIC_MAP_FLOATS);
 }
 
 void DeviceBuffers::add_blocks(std::size_t count, std::size_t words_each) {

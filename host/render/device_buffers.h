@@ -44,6 +44,7 @@ private:
     void add(const std::string& name, const std::vector<T>& values) {
         if (!values.empty()) insert(name, Buffer::of<T>(device_, values));
     }
+    void add_caustics(const DeviceScene& scene);
     void insert(const std::string& name, Buffer buffer);
 
     const Device& device_;

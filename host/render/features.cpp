@@ -60,6 +60,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(textured_emitters, "textured_emitters");
     add(smooth_normals, "smooth_normals");
     add(smooth_terminator, "smooth_terminator");
+    add(caustics, "caustics");
     add(uvs, "uvs");
     add(second_uvs, "second_uvs");
     add(vertex_colors, "vertex_colors");

@@ -42,6 +42,7 @@ struct FeatureSet {
     bool textured_emitters = false;
     bool smooth_normals = false;
     bool smooth_terminator = false;  // light leaves the curved surface that they stand for
+    bool caustics = false;           // photons guide paths to them
     bool uvs = false;
     bool second_uvs = false;         // some texture uses the second set of coordinates
     bool vertex_colors = false;

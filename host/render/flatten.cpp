@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 
+#include "render/flatten_caustics.h"
 #include "render/flatten_instances.h"
 #include "render/flatten_layers.h"
 #include "render/flatten_lights.h"
@@ -63,6 +64,8 @@ public:
         }
         lights_.finish(radius);
         set_parameters();
+        out_.parameters.scene_size = static_cast<float>(2.0 * radius);
+        flatten_caustics(out_, bounds, lights_);
         out_.filter_table = build_filter_table(scene_.film.filter);
         flatten_layers(scene_, out_);
         finish_features();

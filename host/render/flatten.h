@@ -7,6 +7,7 @@
 #include "accel/bvh.h"
 #include "render/features.h"
 #include "scene/scene.h"
+#include "shared/caustics.h"
 #include "shared/lights.h"
 #include "shared/media.h"
 #include "shared/scene.h"
@@ -67,6 +68,11 @@ struct DeviceScene {
     std::vector<float> environment_density;
 
     std::vector<float> filter_table;
+
+    // caustics; both empty where nothing makes any
+    std::vector<CausticTarget> caustic_targets;
+    CausticGrid caustic_grid{};
+    double mean_irradiance = 0.0;  // of its surfaces, about, were nothing in the way of light; by luminance, W / m^2
 
     // picture
     std::vector<PictureChannel> channels;

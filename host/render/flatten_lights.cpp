@@ -130,6 +130,12 @@ void LightFlattener::add_analytic(const AreaEmitter& emitter, LightIndex kind, s
     add_placed_light(light, bounds);
 }
 
+double LightFlattener::placed_flux() const {
+    double sum = 0.0;
+    for (const LightBounds& b : bounds_) sum += std::numbers::pi * b.intensity;
+    return sum;
+}
+
 bool LightFlattener::has_place(const Emitter& emitter) {
     return std::holds_alternative<PointEmitter>(emitter) || std::holds_alternative<SpotEmitter>(emitter) ||
            std::holds_alternative<ProjectorEmitter>(emitter);
@@ -194,6 +200,7 @@ void LightFlattener::add(const ConstantEmitter& e) {
     environment.to_world = environment.to_object = affine(glm::mat4(1.0F));
     environment.light = static_cast<std::uint32_t>(out_.lights.size());
     out_.environment.push_back(environment);
+    infinite_irradiance_ += std::numbers::pi * luminance(e.radiance);
     add_light(light_of(LIGHT_CONSTANT, {packed(e.radiance), WAVELOBE_NONE}));
 }
 
@@ -211,6 +218,7 @@ void LightFlattener::add(const EnvironmentMap& e) {
     environment.radiance = {e.scale, e.scale, e.scale};
     environment.light = static_cast<std::uint32_t>(out_.lights.size());
     out_.environment.push_back(environment);
+    infinite_irradiance_ += 0.25 * static_cast<double>(e.scale) * table.luminance_integral;
     out_.environment_texels = image.rgb;
     out_.environment_sums = std::move(table.sums);
     out_.environment_density = std::move(table.density);

@@ -37,6 +37,9 @@ public:
     // How many have one; they come first if add_emitter was called for them first.
     std::uint32_t finite_count() const { return static_cast<std::uint32_t>(bounds_.size()); }
     std::uint32_t count() const { return count_; }
+    // By luminance: what lights with a place send out, about, W, and the mean irradiance of those at infinity, W / m^2.
+    double placed_flux() const;
+    double infinite_irradiance() const { return infinite_irradiance_; }
 
 private:
     // What all triangles of a mesh have in common.
@@ -63,6 +66,7 @@ private:
     MaterialFlattener& materials_;
     DeviceScene& out_;
     std::uint32_t count_ = 0;
+    double infinite_irradiance_ = 0.0;
     std::vector<LightBounds> bounds_;  // of the lights with a place
     std::vector<std::pair<std::size_t, TexturedRgb>> unsampled_;  // shapes and their radiance
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "render/flatten_caustics.h"
 #include "scene/fault.h"
 #include "shared/block.h"
 
@@ -67,7 +68,7 @@ MemoryEstimate estimate_memory(const Scene& scene, const DeviceScene& data) {
     const std::uint64_t hierarchy = primitives * hierarchy_bytes_per_primitive + data.instances.size() * hierarchy_bytes_per_instance;
 
     MemoryEstimate estimate;
-    estimate.device_bytes = film + hierarchy + arrays;
+    estimate.device_bytes = film + hierarchy + arrays + (data.features.caustics ? caustic_bytes(data.caustic_grid) : 0);
     const std::uint64_t host = program_bytes + scene_bytes(scene, data) + arrays + bytes_of(data.triangles) + bytes_of(data.instance_bounds);
     const std::uint64_t building = primitives * build_bytes_per_primitive;
     const std::uint64_t uploading = hierarchy + estimate.device_bytes;

@@ -32,6 +32,8 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_TEXTURED_EMITTERS", f.textured_emitters);
     out.define("HAS_SMOOTH_NORMALS", f.smooth_normals);
     out.define("HAS_SMOOTH_TERMINATOR", f.smooth_terminator);
+    out.define("HAS_CAUSTICS", f.caustics);
+    out.define("HAS_PATH_ETA", f.transmission || f.caustics);
     out.define("HAS_UVS", f.uvs);
     out.define("HAS_SECOND_UVS", f.second_uvs);
     out.define("HAS_VERTEX_COLORS", f.vertex_colors);
@@ -175,6 +177,9 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
         out.include("stages/stage_kernel.h");
         for (const std::string& stage : features.stages()) out.line("STAGE_KERNEL(" + stage + ")");
     }
+    if (!features.caustics) return out.text();
+    out.include("caustics/photons.h");
+    out.include("caustics/build_maps.h");
     return out.text();
 }
 

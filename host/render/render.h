@@ -50,6 +50,7 @@ struct RenderSettings {
     double time_limit = 0.0;    // seconds of rendering; 0: none
     Estimator estimator = Estimator::mis;
     Sampler sampler = Sampler::sobol;
+    bool guide_caustics = true;      // by photons, where light comes through glass or off mirrors (kernels/caustics)
     bool smooth_terminator = false;  // light leaves the curved surface that smooth normals stand for (kernels/shapes/smooth_terminator.h)
     std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
     BuildProgress build_progress;   // told how far the hierarchy is; where it says false, Renderer throws BuildStopped

@@ -10,6 +10,7 @@
 #include "cl/program.h"
 #include "render/driver.h"
 #include "render/flatten.h"
+#include "render/flatten_caustics.h"
 #include "render/memory.h"
 #include "render/picture_channels.h"
 #include "scene/fault.h"
@@ -66,6 +67,11 @@ DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
     data.parameters.seed = settings.seed;
     data.parameters.layer_film_step = layer_film_step(settings);
     data.features.independent_samples = settings.sampler == Sampler::independent;
+    // Ended by error or time, a picture takes what it takes.
+    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
+    const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) * static_cast<std::uint64_t>(scene.film.height);
+    set_photon_count(data, pixels * (open_end ? 1024U : static_cast<std::uint64_t>(settings.samples_per_pixel)));
+    data.features.caustics = data.features.caustics && settings.guide_caustics;
     data.features.smooth_terminator = settings.smooth_terminator && data.features.smooth_normals;
     data.features.error_estimate = settings.target_error > 0.0;
     return data;
@@ -142,7 +148,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       buffers(device) {
     build_geometry();
     const auto start = Clock::now();
-    const RenderContext context{device, scene_data.features, buffers, scheduler, timer, stats, slots};
+    const RenderContext context{device, scene_data.features, buffers, scheduler, timer, stats, slots, scene_data.mean_irradiance};
     switch (settings.driver) {
         case Driver::one_kernel: driver = make_one_kernel_driver(context); break;
         case Driver::staged: driver = make_staged_driver(context); break;

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "render/driver.h"
+#include "render/photons.h"
 
 namespace wavelobe {
 namespace {
@@ -47,6 +47,7 @@ public:
     void prepare(const Program& program) override {
         kernel_.emplace(program, "replay_path");
         kernel_->bind(context_.buffers.table());
+        shoot_photons(context_, program, 1);
     }
 
     void step(double /*seconds*/) override {

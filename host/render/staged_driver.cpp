@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/driver.h"
+#include "render/photons.h"
 
 namespace wavelobe {
 namespace {
@@ -31,6 +31,7 @@ public:
             run(stage);
         }
         context_.device.finish();
+        shoot_photons(context_, program, headers_.size());
     }
 
     // One vertex of every path in flight.

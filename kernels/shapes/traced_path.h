@@ -18,7 +18,7 @@ typedef struct {
 #if HAS_ANALYTIC
     Vec3 origin;
 #endif
-#if HAS_TRANSMISSION
+#if HAS_PATH_ETA
     Float eta;
 #endif
 #if HAS_INSTANCES
@@ -49,7 +49,7 @@ INLINE TracedPath read_traced_path(Queue q, uint i) {
 #if HAS_ANALYTIC
     p.origin = read_vec3(q, PATH_ORIGIN, i);
 #endif
-#if HAS_TRANSMISSION
+#if HAS_PATH_ETA
     p.eta = read_field(q, PATH_ETA, i);
 #endif
 #if HAS_INSTANCES

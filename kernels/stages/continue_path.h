@@ -38,13 +38,13 @@ INLINE uint append_rays(Queue rays, uint at, const TracedPath *path, const Surfa
     append_field(rays, PATH_PDF, at, pdf, bits);
     append_uint(rays, PATH_ID, at, path->id, bits);
     append_uint(rays, PATH_DEPTH, at, path->depth + (UInt)1u, bits);
-#if HAS_TRANSMISSION
+#if HAS_PATH_ETA
     append_field(rays, PATH_ETA, at, eta, bits);
 #endif
     return at + popcount(bits);
 }
 
-#if HAS_TRANSMISSION
+#if HAS_PATH_ETA
 #define PATH_ETA_OF(path) (path).eta
 #else
 #define PATH_ETA_OF(path) ONE

@@ -30,7 +30,7 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
 #if HAS_MEDIA
         append_uint(rays, PATH_MEDIUM, count, (UInt)p->camera_medium, bits);
 #endif
-#if HAS_TRANSMISSION
+#if HAS_PATH_ETA
         append_field(rays, PATH_ETA, count, ONE, bits);
 #endif
         count += popcount(bits);

@@ -20,9 +20,19 @@
 #define RECEIVER_ARGUMENT
 #endif
 
+#if HAS_CAUSTICS
+#define GUIDE_PARAMETER , CausticGuide guide
+#define GUIDE_ARGUMENT , guide
+#define GUIDED_PDF(scene, pdf, direction) guided_pdf((scene)->caustics, guide, pdf, direction)
+#else
+#define GUIDE_PARAMETER
+#define GUIDE_ARGUMENT
+#define GUIDED_PDF(scene, pdf, direction) (pdf)
+#endif
+
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
 INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneView *scene, SampleId sample, const TracedPath *path,
-                                const Surface *surface, const SmoothLobes *lobes RECEIVER_PARAMETER) {
+                                const Surface *surface, const SmoothLobes *lobes GUIDE_PARAMETER RECEIVER_PARAMETER) {
     LightInput in = scene->lights;
     Float u_light = ZERO, u1, u2;
 #if LIGHT_COUNT > 1
@@ -42,6 +52,7 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
     if (!any_lane(shines)) return at;
 
     LobeValue value = eval_smooth_lobes(lobes, surface->wi, to_local(surface->frame, light.direction));
+    value.pdf = GUIDED_PDF(scene, value.pdf, light.direction);
     value.f_cos = scale(value.f_cos, MAPPED_SHARE(surface, light.direction));
     Float pdf = choice * light.pdf;
     Float weight = SELECT(light.delta, ONE, light_sample_weight(pdf, value.pdf));
@@ -85,16 +96,42 @@ INLINE void leave_curved_surface(SurfaceView view, Surface *surface) {
 }
 #endif
 
-// A direction from the lobe of the queue's class.
-INLINE Vec3 sample_lobe(uint lobe_class, const SmoothLobes *lobes, SampleId sample, UInt depth, Vec3 wi) {
+#if HAS_CAUSTICS
+INLINE Int has_diffuse_lobe(const SmoothLobes *lobes) {
+    UInt all = (UInt)0u;
+#define DIFFUSE_BIT(name, NAME) all |= (UInt)(1u << LOBE_##NAME);
+    SCENE_DIFFUSE_LOBES(DIFFUSE_BIT)
+#undef DIFFUSE_BIT
+    return (lobes->lobes & all) != (UInt)0u;
+}
+
+// What a sample is expected to bring is as much more than its throughput says as the guide has made its direction likelier: roulette
+// has to know. (Its measure is the throughput times the square of this.)
+INLINE Float guided_gain(Float pdf, Float unguided) {
+    return SELECT(pdf > unguided, sqrt(pdf / GREATER(unguided, (Float)FLT_MIN)), ONE);
+}
+#endif
+
+// A direction from the lobe of the queue's class or, of the share that is guided, from the guide.
+INLINE Vec3 sample_direction(uint lobe_class, const SceneView *scene, const SmoothLobes *lobes, SampleId sample, UInt depth,
+                             const Surface *surface GUIDE_PARAMETER) {
     Float u1, u2, u3 = ZERO;
     sample_2d(sample, vertex_pair(depth, PAIR_DIRECTION), &u1, &u2);
 #if HAS_TRANSMISSION || HAS_LAYERED_LOBES || HAS_LOBE_PRINCIPLED // a lobe on both sides, or of several parts, chooses among them
     Float unused;
     sample_2d(sample, vertex_pair(depth, PAIR_CHOICE), &unused, &u3);
 #endif
-    return lobe_class == LOBE_CLASS_GLOSSY ? sample_glossy_lobe(lobes, wi, u1, u2, u3)
-                                           : sample_diffuse_lobe(lobes, wi, u1, u2, u3);
+#if HAS_CAUSTICS
+    Int guided = u1 < guide.share;
+    Float of_guide = u1 / guide.share;
+    u1 = SELECT(guided, ZERO, (u1 - guide.share) / (1.0f - guide.share));
+#endif
+    Vec3 wo = lobe_class == LOBE_CLASS_GLOSSY ? sample_glossy_lobe(lobes, surface->wi, u1, u2, u3)
+                                              : sample_diffuse_lobe(lobes, surface->wi, u1, u2, u3);
+#if HAS_CAUSTICS
+    if (any_lane(guided)) wo = select3(guided, to_local(surface->frame, caustic_sample(scene->caustics, guide, of_guide, u2)), wo);
+#endif
+    return wo;
 }
 
 #if HAS_LIGHT_TREE
@@ -149,11 +186,16 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
 #if HAS_LIGHT_TREE
         ReceiverCode receiver = surface_receiver(scene->surfaces, &surface, &lobes);
 #endif
-#if HAS_LIGHTS
-        shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes RECEIVER_ARGUMENT);
+#if HAS_CAUSTICS
+        CausticGuide guide = caustic_guide(scene->caustics, surface.position, has_diffuse_lobe(&lobes));
 #endif
-        Vec3 wo = sample_lobe(lobe_class, &lobes, sample, path.depth, surface.wi);
+#if HAS_LIGHTS
+        shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes GUIDE_ARGUMENT RECEIVER_ARGUMENT);
+#endif
+        Vec3 wo = sample_direction(lobe_class, scene, &lobes, sample, path.depth, &surface GUIDE_ARGUMENT);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
+        Float unguided = value.pdf;
+        value.pdf = GUIDED_PDF(scene, value.pdf, to_world(surface.frame, wo));
         Int alive = path.live & (value.pdf > 0.0f);
         Vec3 direction = normalize3(to_world(surface.frame, wo));
         Float share = MAPPED_SHARE(&surface, direction) / SELECT(alive, value.pdf, ONE);
@@ -162,6 +204,9 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
                        ZERO * value.pdf + SELECT(alive, finiteness3(throughput), ZERO);
         alive &= !mark_broken(block, stage, path.id, path.live, finite) & (max_component(throughput) > 0.0f);
         Float eta = PATH_ETA_OF(path) * crossed_index(in, surface.wi, wo);
+#if HAS_CAUSTICS
+        eta *= guided_gain(value.pdf, unguided);
+#endif
         alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
 #if HAS_LIGHT_TREE
         append_uint(rays, PATH_RECEIVER, appended, receiver.normal, lane_bits(alive));

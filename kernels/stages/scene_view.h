@@ -8,6 +8,9 @@
 #endif
 #include "bsdf/material.h"
 #include "shapes/geometry_parameters.h"
+#if HAS_CAUSTICS
+#include "caustics/guide.h"
+#endif
 #if HAS_LIGHTS
 #include "lights/choose.h"
 #endif
@@ -29,6 +32,9 @@ typedef struct {
 #endif
     global const float *filter_table;
     global struct FilmPixel *film;
+#if HAS_CAUSTICS
+    CausticView caustics;
+#endif
 #if HAS_LAYERS
     global double *layer_film;
     global const uint *layer_shapes; // number of each shape
@@ -38,6 +44,13 @@ typedef struct {
 #endif
 } SceneView;
 
+#if HAS_CAUSTICS
+#define CAUSTIC_PARAMETERS , global struct CausticGrid *caustic_grid, global const uint *caustic_cells, global const float *caustic_maps
+#define CAUSTIC_ARGUMENTS , {caustic_grid, caustic_cells, caustic_maps}
+#else
+#define CAUSTIC_PARAMETERS
+#define CAUSTIC_ARGUMENTS
+#endif
 #if HAS_LAYERS
 #define LAYER_PARAMETERS , global double *layer_film, global const uint *layer_shapes
 #define LAYER_ARGUMENTS , layer_film, layer_shapes
@@ -70,9 +83,9 @@ typedef struct {
 
 #define SCENE_PARAMETERS                                                                          \
     SURFACE_PARAMETERS TEXTURE_PARAMETERS SCENE_LIGHT_PARAMETERS MEDIA_PARAMETERS, GEOMETRY_PARAMETERS, \
-        global const float *filter_table, global struct FilmPixel *film LAYER_PARAMETERS MOMENT_PARAMETER
+        global const float *filter_table, global struct FilmPixel *film CAUSTIC_PARAMETERS LAYER_PARAMETERS MOMENT_PARAMETER
 #define SCENE_VIEW                                                                                \
-    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW MEDIA_VIEW filter_table, film LAYER_ARGUMENTS \
+    {parameters, SURFACE_VIEW, GEOMETRY_VIEW, TEXTURE_ARGUMENTS, SCENE_LIGHT_VIEW MEDIA_VIEW filter_table, film CAUSTIC_ARGUMENTS LAYER_ARGUMENTS \
      MOMENT_ARGUMENT}
 
 #endif
