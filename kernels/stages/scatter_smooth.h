@@ -194,8 +194,10 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
 #endif
         Vec3 wo = sample_direction(lobe_class, scene, &lobes, sample, path.depth, &surface GUIDE_ARGUMENT);
         LobeValue value = eval_smooth_lobes(&lobes, surface.wi, wo);
+#if HAS_CAUSTICS
         Float unguided = value.pdf;
-        value.pdf = GUIDED_PDF(scene, value.pdf, to_world(surface.frame, wo));
+        value.pdf = guided_pdf(scene->caustics, guide, unguided, to_world(surface.frame, wo));
+#endif
         Int alive = path.live & (value.pdf > 0.0f);
         Vec3 direction = normalize3(to_world(surface.frame, wo));
         Float share = MAPPED_SHARE(&surface, direction) / SELECT(alive, value.pdf, ONE);
