@@ -17,18 +17,6 @@
 namespace wavelobe {
 namespace {
 
-Bounds bounds_of_range(const DeviceScene& scene, const GeometryRange& range) {
-    Bounds b;
-    for (const TriangleVertices& t : std::span(scene.triangles).subspan(range.first_triangle, range.triangle_count)) {
-        for (const glm::vec3& p : t) b.extend(p);
-    }
-    for (const Bounds& a : std::span(scene.analytic_bounds).subspan(range.first_analytic, range.analytic_count)) {
-        b.extend(a.lower);
-        b.extend(a.upper);
-    }
-    return b;
-}
-
 Bounds bounds_of_scene(const DeviceScene& scene) {
     Bounds b = bounds_of_range(scene, scene.world);
     for (const Bounds& i : scene.instance_bounds) {
@@ -64,7 +52,6 @@ public:
         }
         lights_.finish(radius);
         set_parameters();
-        out_.parameters.scene_size = static_cast<float>(2.0 * radius);
         flatten_caustics(out_, bounds, lights_);
         out_.filter_table = build_filter_table(scene_.film.filter);
         flatten_layers(scene_, out_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "render/flatten_lights.h"
 #include "scene/fault.h"
@@ -46,6 +47,18 @@ Bounds instance_bounds(const glm::mat4& to_world, const Bounds& box) {
     const glm::dvec3 margin = 16.0 * static_cast<double>(std::numeric_limits<float>::epsilon()) *
                               (glm::dvec3(std::max({reach.x, reach.y, reach.z})) + glm::abs(glm::dvec3(m[3])));
     return {glm::vec3(lower - margin), glm::vec3(upper + margin)};
+}
+
+Bounds bounds_of_range(const DeviceScene& scene, const GeometryRange& range) {
+    Bounds b;
+    for (const TriangleVertices& t : std::span(scene.triangles).subspan(range.first_triangle, range.triangle_count)) {
+        for (const glm::vec3& p : t) b.extend(p);
+    }
+    for (const Bounds& a : std::span(scene.analytic_bounds).subspan(range.first_analytic, range.analytic_count)) {
+        b.extend(a.lower);
+        b.extend(a.upper);
+    }
+    return b;
 }
 
 }  // namespace wavelobe

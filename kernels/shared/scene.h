@@ -54,7 +54,7 @@ struct RenderParameters {
     Uint32 layer_first_instance; // number of the first instance among the shapes that layers name
     float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
     Uint32 camera_medium; // that the camera is in
-    float scene_size;     // of the diagonal of its bounds
+    float scene_size;     // of the diagonal of its bounds; of scenes with caustics
 };
 WAVELOBE_CHECK_SIZE(RenderParameters, 168);
 

@@ -28,6 +28,7 @@ const std::vector<Known> known_constants{
     {"bsdf/fresnel.h", "GREATER(sum, (Float)1e-30f)", "divisor of a quotient that is not selected"},
     {"bsdf/principled_parameters.h", "#define LEAST_PRINCIPLED_ALPHA 1e-3f", "narrowest slopes, as Mitsuba 3 has them"},
     {"bsdf/principled_parameters.h", "GREATER(wo.z + wi.z, (Float)1e-30f)", "divisor of a quotient that is not selected"},
+    {"caustics/guide.h", "(Float)0x1p-18f), (Float)(1.0f - 0x1p-18f)", "margin of a bin of directions, of which no rounding leads out"},
     {"bsdf/ward.h", "GREATER(h.z, (Float)1e-9f)", "divisor of a quotient that is not selected"},
     {"lights/rectangle.h", "ONE), (Float)0x1p-40f)", "square of a sine below the rounding of its cosine"},
     {"lights/light_tree.h", "#define HORIZON_SLACK 0x1p-13f", "rounding of coded normals: lights are sampled rather too often"},
