@@ -37,12 +37,13 @@ bool has_visible_light(const FeatureSet& f) {
     return false;
 }
 
-// Bounds of what has delta lobes, of shapes that stand in the world.
+// Bounds of what has delta lobes alone (what a coat of plastic mirrors is faint), of shapes that stand in the world.
 std::vector<Bounds> delta_bounds(const DeviceScene& scene) {
+    constexpr std::uint32_t all_classes = SHAPE_HAS_DELTA | SHAPE_HAS_GLOSSY | SHAPE_HAS_DIFFUSE;
     std::vector<Bounds> of_shape(scene.shapes.size());
     const auto extend = [&](std::size_t primitive, const glm::vec3& p) {
         const std::uint32_t shape = scene.primitive_shapes[primitive];
-        if ((scene.shapes[shape].flags & SHAPE_HAS_DELTA) != 0) of_shape[shape].extend(p);
+        if ((scene.shapes[shape].flags & all_classes) == SHAPE_HAS_DELTA) of_shape[shape].extend(p);
     };
     const GeometryRange& world = scene.world;
     for (std::size_t i = world.first_triangle; i < world.first_triangle + world.triangle_count; ++i) {
