@@ -6,6 +6,17 @@
 #include "sampling/mis.h"
 #include "stages/continue_path.h"
 #include "stages/scattering_surface.h"
+
+#if HAS_CAUSTICS
+#define GUIDE_PARAMETER , CausticGuide guide
+#define GUIDE_ARGUMENT , guide
+#define GUIDED_PDF(scene, pdf, direction) guided_pdf((scene)->caustics, guide, pdf, direction)
+#else
+#define GUIDE_PARAMETER
+#define GUIDE_ARGUMENT
+#define GUIDED_PDF(scene, pdf, direction) (pdf)
+#endif
+
 #if HAS_LIGHTS
 
 // How far a shadow ray may look, as a share of its length: short of the light's own surface by the rounding of a hit's
@@ -18,16 +29,6 @@
 #else
 #define RECEIVER_PARAMETER
 #define RECEIVER_ARGUMENT
-#endif
-
-#if HAS_CAUSTICS
-#define GUIDE_PARAMETER , CausticGuide guide
-#define GUIDE_ARGUMENT , guide
-#define GUIDED_PDF(scene, pdf, direction) guided_pdf((scene)->caustics, guide, pdf, direction)
-#else
-#define GUIDE_PARAMETER
-#define GUIDE_ARGUMENT
-#define GUIDED_PDF(scene, pdf, direction) (pdf)
 #endif
 
 // Next-event estimation: appends the shadow rays of the lanes to which a light may contribute.
