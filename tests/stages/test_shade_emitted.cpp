@@ -63,6 +63,12 @@ Scene many_lights() {
     return scene;
 }
 
+// Of a triangle: van Oosterom and Strackee 1983.
+double solid_angle(std::span<const glm::vec3, 3> t, const glm::dvec3& from) {
+    const glm::dvec3 a = glm::normalize(glm::dvec3(t[0]) - from), b = glm::normalize(glm::dvec3(t[1]) - from), c = glm::normalize(glm::dvec3(t[2]) - from);
+    return 2.0 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+}
+
 void expect_weighted_against_light_sample(StageBench& bench) {
     const glm::vec3 direction{0.5F, 0.25F, -1};
     const double cosine = 1.0 / glm::length(glm::dvec3(direction));
@@ -81,7 +87,10 @@ void expect_weighted_against_light_sample(StageBench& bench) {
             const double choice = reference_probability(bench.scene().light_tree, chosen.place,
                                                               ReferenceReceiver{hit - 4.0 * glm::normalize(glm::dvec3(direction)), {}});
             ASSERT_GT(choice, 0.0);
-            const double light = choice * 16.0 / (cosine * areas[triangle]);
+            // Large triangles are sampled by solid angle.
+            const bool wide = chosen.kind == LIGHT_SPHERICAL_TRIANGLE;
+            const glm::dvec3 from = hit - 4.0 * glm::normalize(glm::dvec3(direction));
+            const double light = choice * (wide ? 1.0 / solid_angle(t, from) : 16.0 / (cosine * areas[triangle]));
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);
             const Rgb radiance = triangle < 2 ? first_radiance : second_radiance;
             expect_close(bench.radiance(8),
