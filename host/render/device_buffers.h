@@ -30,6 +30,12 @@ public:
         insert(name, Buffer(device_, count * sizeof(T)));
     }
 
+    // Of what no later kernel asks for.
+    void remove(const std::string& name) {
+        table_.erase(name);
+        buffers_.erase(name);
+    }
+
     const BufferTable& table() const { return table_; }
     std::uint64_t total_bytes() const;
 

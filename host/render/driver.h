@@ -23,7 +23,6 @@ struct RenderContext {
     StageTimer& timer;
     RenderStats& stats;
     int block_slots;
-    double mean_irradiance = 0.0;  // of scenes with caustics, see DeviceScene
 };
 
 class BlockDriver {

@@ -69,10 +69,9 @@ struct DeviceScene {
 
     std::vector<float> filter_table;
 
-    // caustics; both empty where nothing makes any
+    // caustics; no targets where nothing makes any
     std::vector<CausticTarget> caustic_targets;
     CausticGrid caustic_grid{};
-    double mean_irradiance = 0.0;  // of its surfaces, about, were nothing in the way of light; by luminance, W / m^2
 
     // picture
     std::vector<PictureChannel> channels;

@@ -113,8 +113,8 @@ void flatten_caustics(DeviceScene& out, const Bounds& bounds, const LightFlatten
     if (out.caustic_targets.empty()) return;
     share_photons(out.caustic_targets);
     out.caustic_grid = grid_about(out.caustic_targets, bounds);
-    out.parameters.scene_size = glm::length(bounds.upper - bounds.lower);
-    out.mean_irradiance = lights.placed_flux() / area_of(out) + lights.infinite_irradiance();
+    out.caustic_grid.scene_size = glm::length(bounds.upper - bounds.lower);
+    out.caustic_grid.mean_irradiance = static_cast<float>(lights.placed_flux() / area_of(out) + lights.infinite_irradiance());
     f.caustics = true;
 }
 

@@ -30,13 +30,14 @@ std::vector<std::size_t> choose_cells(const DeviceBuffers& buffers) {
 // Takes their map from cells where samples of the lobes find the light well enough: what these add to the squared relative error is
 // about pi times the integral of the squared radiance over the square of the irradiance, the scene's mean for that of the cell, whose
 // surface is taken to be as large as a side of it.
-void drop_easy_cells(const DeviceBuffers& buffers, const std::vector<std::size_t>& chosen, double mean_irradiance) {
+void drop_easy_cells(const DeviceBuffers& buffers, const std::vector<std::size_t>& chosen) {
     const CausticGrid& grid = buffers.view<CausticGrid>("caustic_grid")[0];
     const auto squares = buffers.view<std::uint64_t>("caustic_squares");
     const auto cells = buffers.view<std::uint32_t>("caustic_cells");
     const auto value = [](std::uint32_t bits) { return static_cast<double>(std::bit_cast<float>(bits)); };
     const double unit = value(grid.greatest_flux) * value(grid.greatest_radiance) * 0x1p-32 / (static_cast<double>(grid.batches) * PHOTONS_A_BATCH);
     const double per_area = static_cast<double>(grid.inverse_step) * static_cast<double>(grid.inverse_step);
+    const auto mean_irradiance = static_cast<double>(grid.mean_irradiance);
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const double square = static_cast<double>(squares[i]) * unit * per_area;
         const double variance = std::numbers::pi * square / (mean_irradiance * mean_irradiance);
@@ -44,10 +45,7 @@ void drop_easy_cells(const DeviceBuffers& buffers, const std::vector<std::size_t
     }
 }
 
-}  // namespace
-
-void shoot_photons(const RenderContext& context, const Program& program, std::size_t work_items) {
-    if (!context.features.caustics) return;
+void fill_maps(const RenderContext& context, const Program& program, std::size_t work_items) {
     const DeviceBuffers& buffers = context.buffers;
     Kernel shoot(program, "shoot_photons"), build(program, "build_caustic_maps");
     shoot.bind(buffers.table());
@@ -64,7 +62,15 @@ void shoot_photons(const RenderContext& context, const Program& program, std::si
     grid.recording = 1;
     run(shoot, work_items);
     run(build, chosen.size());
-    drop_easy_cells(buffers, chosen, context.mean_irradiance);
+    drop_easy_cells(buffers, chosen);
+}
+
+}  // namespace
+
+void shoot_photons(const RenderContext& context, const Program& program, std::size_t work_items) {
+    if (!context.features.caustics) return;
+    fill_maps(context, program, work_items);
+    for (const char* name : {"caustic_targets", "caustic_counts", "caustic_sums", "caustic_squares"}) context.buffers.remove(name);
 }
 
 }  // namespace wavelobe

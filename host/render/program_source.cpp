@@ -177,9 +177,10 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
         out.include("stages/stage_kernel.h");
         for (const std::string& stage : features.stages()) out.line("STAGE_KERNEL(" + stage + ")");
     }
-    if (!features.caustics) return out.text();
-    out.include("caustics/photons.h");
-    out.include("caustics/build_maps.h");
+    if (features.caustics) {
+        out.include("caustics/photons.h");
+        out.include("caustics/build_maps.h");
+    }
     return out.text();
 }
 

@@ -148,7 +148,7 @@ Renderer::State::State(const Device& device_in, const Scene& scene, const Render
       buffers(device) {
     build_geometry();
     const auto start = Clock::now();
-    const RenderContext context{device, scene_data.features, buffers, scheduler, timer, stats, slots, scene_data.mean_irradiance};
+    const RenderContext context{device, scene_data.features, buffers, scheduler, timer, stats, slots};
     switch (settings.driver) {
         case Driver::one_kernel: driver = make_one_kernel_driver(context); break;
         case Driver::staged: driver = make_staged_driver(context); break;

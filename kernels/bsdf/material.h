@@ -54,6 +54,12 @@ INLINE UInt material_lobes(const Surface *surface, MaterialInput in) {
 
 INLINE Int has_lobe(UInt lobes, uint lobe) { return (lobes & (UInt)(1u << lobe)) != (UInt)0u; }
 
+// The bits of all lobes of a class, and whether a lane has any of them.
+#define LOBE_BIT(name, NAME) | (1u << LOBE_##NAME)
+#define GLOSSY_LOBES (0u SCENE_GLOSSY_LOBES(LOBE_BIT))
+#define DIFFUSE_LOBES (0u SCENE_DIFFUSE_LOBES(LOBE_BIT))
+INLINE Int has_lobe_of(UInt lobes, uint set) { return (lobes & (UInt)set) != (UInt)0u; }
+
 // ---- evaluation: all glossy and diffuse lobes at once ---------------------------------------------------
 
 // The non-delta lobes of a group, loaded once and evaluated for each direction of interest.

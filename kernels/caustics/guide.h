@@ -23,18 +23,14 @@ typedef struct {
     Float share;
 } CausticGuide;
 
-// Which of `steps` equal parts of [0, 1) a share lies in; those outside count to the first and the last.
-INLINE UInt part_of(Float share, uint steps) {
-    return as_UInt(convert_Int(LESSER(GREATER(share * (float)steps, ZERO), (Float)(steps - 1u))));
-}
+// The whole part of a number of [0, steps); those outside count to the first and the last.
+INLINE UInt step_of(Float x, uint steps) { return as_UInt(convert_Int(LESSER(GREATER(x, ZERO), (Float)(steps - 1u)))); }
 
 // Lanes outside of the grid are not `within`; their cell means nothing, but is one.
 INLINE UInt caustic_cell(global const struct CausticGrid *g, Vec3 p, Int *within) {
     Float x = (p.x - g->origin[0]) * g->inverse_step, y = (p.y - g->origin[1]) * g->inverse_step, z = (p.z - g->origin[2]) * g->inverse_step;
-    Float nx = (Float)(float)g->size[0], ny = (Float)(float)g->size[1], nz = (Float)(float)g->size[2];
-    *within = (x >= 0.0f) & (x < nx) & (y >= 0.0f) & (y < ny) & (z >= 0.0f) & (z < nz);
-    UInt cx = part_of(x / nx, g->size[0]), cy = part_of(y / ny, g->size[1]), cz = part_of(z / nz, g->size[2]);
-    return (cz * g->size[1] + cy) * g->size[0] + cx;
+    *within = (x >= 0.0f) & (x < (float)g->size[0]) & (y >= 0.0f) & (y < (float)g->size[1]) & (z >= 0.0f) & (z < (float)g->size[2]);
+    return (step_of(z, g->size[2]) * g->size[1] + step_of(y, g->size[1])) * g->size[0] + step_of(x, g->size[0]);
 }
 
 INLINE CausticGuide caustic_guide(CausticView v, Vec3 position, Int wanted) {
@@ -47,8 +43,9 @@ INLINE CausticGuide caustic_guide(CausticView v, Vec3 position, Int wanted) {
 }
 
 INLINE UInt caustic_bin(Vec3 d) {
-    UInt row = part_of(madd(d.z, (Float)0.5f, (Float)0.5f), CAUSTIC_ROWS);
-    return row * CAUSTIC_COLUMNS + part_of(madd(lane_atan2(d.y, d.x), INV_TWO_PI_F, (Float)0.5f), CAUSTIC_COLUMNS);
+    Float row = madd(d.z, (Float)(0.5f * CAUSTIC_ROWS), (Float)(0.5f * CAUSTIC_ROWS));
+    Float column = madd(lane_atan2(d.y, d.x), (Float)(INV_TWO_PI_F * CAUSTIC_COLUMNS), (Float)(0.5f * CAUSTIC_COLUMNS));
+    return step_of(row, CAUSTIC_ROWS) * CAUSTIC_COLUMNS + step_of(column, CAUSTIC_COLUMNS);
 }
 
 // Density of `caustic_sample` producing a unit direction, mixed with that of the lobes, `pdf`.

@@ -7,6 +7,7 @@
 #include "stages/intersect_closest.h"
 #include "stages/scatter_delta.h"
 #include "stages/sort_paths.h"
+#include "stages/start_path.h"
 
 typedef struct {
     global struct CausticGrid *grid;
@@ -15,8 +16,6 @@ typedef struct {
     global ulong *sums;   // of flux, in units of 2^-32 of the greatest: CAUSTIC_BINS a map
     global ulong *squares; // of flux times radiance, the same, one a map
 } PhotonRecord;
-
-INLINE Float luminance_of(Rgb c) { return madd(c.x, (Float)0.2126f, madd(c.y, (Float)0.7152f, c.z * 0.0722f)); }
 
 typedef struct {
     Vec3 center;
@@ -70,27 +69,15 @@ INLINE uint emit_photons(Block block, const SceneView *scene, PhotonRecord recor
         Vec2 disk = square_to_disk(v1, v2);
         Frame facing = frame_of_normal(light.direction);
         Vec3 through = scale_add(facing.s, disk.x * target.radius, scale_add(facing.t, disk.y * target.radius, target.center));
-        Vec3 start = select3(light.at_infinity, scale_add(light.direction, (Float)scene->parameters->scene_size, through), light.point);
+        Vec3 start = select3(light.at_infinity, scale_add(light.direction, (Float)record.grid->scene_size, through), light.point);
         Vec3 direction = normalize3(sub(through, start));
         start = offset_ray_origin(start, light.error, light.normal, direction);
-        Float flux = luminance_of(light.radiance) * (PI_F * target.radius * target.radius) * target.inverse_chance / pdf;
+        Float flux = luminance(light.radiance) * (PI_F * target.radius * target.radius) * target.inverse_chance / pdf;
         // What delta lights make of caustics no path can find.
         uint bits = lane_bits(!light.delta & (pdf > 0.0f) & (flux > 0.0f) & (flux < INFINITY) & (finiteness3(start) + finiteness3(direction) == 0.0f));
         scatter(radiance_channel(block, 0u), id, flux, bits);
-        scatter(radiance_channel(block, 1u), id, luminance_of(light.radiance), bits);
-        append_vec3(rays, PATH_ORIGIN, count, start, bits);
-        append_vec3(rays, PATH_DIRECTION, count, direction, bits);
-        append_field(rays, PATH_T, count, (Float)INFINITY, bits);
-        append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
-        append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
-        append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
-        append_uint(rays, PATH_ID, count, id, bits);
-        append_uint(rays, PATH_DEPTH, count, (UInt)0u, bits);
-#if HAS_MEDIA
-        append_uint(rays, PATH_MEDIUM, count, (UInt)scene->parameters->camera_medium, bits);
-#endif
-        append_field(rays, PATH_ETA, count, ONE, bits);
-        count += popcount(bits);
+        scatter(radiance_channel(block, 1u), id, luminance(light.radiance), bits);
+        count = append_first_rays(rays, count, scene->parameters, start, direction, (Float)INFINITY, id, bits);
     }
     *rays.count = count;
     return first;
@@ -104,7 +91,7 @@ INLINE void record_photons(Block block, const SceneView *scene, PhotonRecord rec
         Surface surface = load_surface(scene->surfaces, &path);
         // Throughput is that of radiance, which refraction scales; flux it does not.
         LaneFloats flux, radiance;
-        Float share = luminance_of(path.throughput) * path.eta * path.eta;
+        Float share = luminance(path.throughput) * path.eta * path.eta;
         *(Float *)flux.value = gather(radiance_channel(block, 0u), path.id) * share;
         *(Float *)radiance.value = gather(radiance_channel(block, 1u), path.id) * share;
         Int within;

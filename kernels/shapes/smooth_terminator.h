@@ -36,11 +36,6 @@ INLINE Rise rise_above(Rise rise, Vec3 normal, Vec3 shading) {
     return rise;
 }
 
-INLINE Rise turned_rise(Rise rise, Int turned) {
-    Rise out = {select3(turned, rise.behind, rise.front), select3(turned, rise.front, rise.behind)};
-    return out;
-}
-
 // Moves a point known within +-error; the bound stays one.
 INLINE void raise_point(Vec3 rise, Vec3 *position, Vec3 *error) {
     *position = add(*position, rise);

@@ -42,7 +42,7 @@ typedef struct {
     Frame unmapped; // the frame before it was turned and tilted
 #endif
 #if HAS_SMOOTH_TERMINATOR
-    Rise rise;      // front: on the side the path came from, once that is known
+    Rise rise;      // front becomes that of the side the path came from
 #endif
     Float u, v;    // texture coordinates
 #if HAS_SECOND_UVS
@@ -232,7 +232,7 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     out->wi = to_local(out->frame, back_along);
     Int behind = out->wi.z < 0.0f;
 #if HAS_SMOOTH_TERMINATOR
-    out->rise = turned_rise(out->rise, behind);
+    out->rise.front = select3(behind, out->rise.behind, out->rise.front);
 #endif
     UInt front = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
 #if HAS_UNLIKE_SIDES

@@ -3,14 +3,9 @@
 #define WAVELOBE_SHAPES_SURFACE_VIEW_H
 
 #include "core/lanes.h"
+#include "shared/lights.h"
 #include "shared/materials.h"
 #include "shared/scene.h"
-#if HAS_ANALYTIC
-#include "shapes/analytic_geometry.h"
-#endif
-#if HAS_INSTANCES
-#include "shapes/instance.h"
-#endif
 
 // Kernels take SURFACE_PARAMETERS and write SURFACE_VIEW.
 typedef struct {

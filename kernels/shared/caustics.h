@@ -23,8 +23,10 @@ struct CausticGrid {
     Uint32 next_batch;    // that no work-item has taken
     Uint32 greatest_flux, greatest_radiance; // bits of floats: of all photons that arrived
     Uint32 recording;     // 0: photons are counted; 1: they are recorded in the maps of their cells
+    float scene_size;     // diagonal of the scene's bounds
+    float mean_irradiance; // of the scene's surfaces, about, were nothing in the way of light; by luminance, W / m^2
 };
-WAVELOBE_CHECK_SIZE(CausticGrid, 52);
+WAVELOBE_CHECK_SIZE(CausticGrid, 60);
 
 // Directions by height and azimuth, all bins alike in solid angle.
 #define CAUSTIC_ROWS 16u

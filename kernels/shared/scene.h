@@ -54,9 +54,8 @@ struct RenderParameters {
     Uint32 layer_first_instance; // number of the first instance among the shapes that layers name
     float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
     Uint32 camera_medium; // that the camera is in
-    float scene_size;     // of the diagonal of its bounds; of scenes with caustics
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 168);
+WAVELOBE_CHECK_SIZE(RenderParameters, 164);
 
 // Squares of red, green and blue, and of X, Y and Z, that a pixel holds where they are asked for.
 #define MOMENT_CHANNELS 6u

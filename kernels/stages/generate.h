@@ -2,8 +2,8 @@
 #ifndef WAVELOBE_STAGES_GENERATE_H
 #define WAVELOBE_STAGES_GENERATE_H
 
-#include "shared/bvh.h"
 #include "stages/camera.h"
+#include "stages/start_path.h"
 
 INLINE uint run_generate(Block block, const SceneView *scene) {
     Queue rays = QUEUE(block, RAYS);
@@ -19,21 +19,7 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
         if (bits == 0u) continue;
         FilmSample at = film_sample(block, scene, id);
         CameraRay r = camera_ray(p, at.id, at.x, at.y);
-        append_vec3(rays, PATH_ORIGIN, count, r.origin, bits);
-        append_vec3(rays, PATH_DIRECTION, count, r.direction, bits);
-        append_field(rays, PATH_T, count, r.length, bits);
-        append_uint(rays, PATH_HIT, count, (UInt)HIT_NONE, bits);
-        append_vec3(rays, PATH_THROUGHPUT, count, vec3_all(ONE), bits);
-        append_field(rays, PATH_PDF, count, (Float)-1.0f, bits);
-        append_uint(rays, PATH_ID, count, id, bits);
-        append_uint(rays, PATH_DEPTH, count, (UInt)0u, bits);
-#if HAS_MEDIA
-        append_uint(rays, PATH_MEDIUM, count, (UInt)p->camera_medium, bits);
-#endif
-#if HAS_PATH_ETA
-        append_field(rays, PATH_ETA, count, ONE, bits);
-#endif
-        count += popcount(bits);
+        count = append_first_rays(rays, count, p, r.origin, r.direction, r.length, id, bits);
     }
     uint started = count - *rays.count;
     block.header->started = started;

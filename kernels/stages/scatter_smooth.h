@@ -98,14 +98,6 @@ INLINE void leave_curved_surface(SurfaceView view, Surface *surface) {
 #endif
 
 #if HAS_CAUSTICS
-INLINE Int has_diffuse_lobe(const SmoothLobes *lobes) {
-    UInt all = (UInt)0u;
-#define DIFFUSE_BIT(name, NAME) all |= (UInt)(1u << LOBE_##NAME);
-    SCENE_DIFFUSE_LOBES(DIFFUSE_BIT)
-#undef DIFFUSE_BIT
-    return (lobes->lobes & all) != (UInt)0u;
-}
-
 // What a sample is expected to bring is as much more than its throughput says as the guide has made its direction likelier: roulette
 // has to know. (Its measure is the throughput times the square of this.)
 INLINE Float guided_gain(Float pdf, Float unguided) {
@@ -138,11 +130,7 @@ INLINE Vec3 sample_direction(uint lobe_class, const SceneView *scene, const Smoo
 #if HAS_LIGHT_TREE
 #if HAS_GLOSSY_RECEIVERS
 INLINE UInt surface_lobe(const Surface *surface, const SmoothLobes *lobes) {
-    UInt all = (UInt)0u;
-#define GLOSSY_BIT(name, NAME) all |= (UInt)(1u << LOBE_##NAME);
-    SCENE_GLOSSY_LOBES(GLOSSY_BIT)
-#undef GLOSSY_BIT
-    Int glossy = (lobes->lobes & all) != (UInt)0u;
+    Int glossy = has_lobe_of(lobes->lobes, GLOSSY_LOBES);
     if (!any_lane(glossy)) return (UInt)NO_LOBE;
 #if HAS_MIXTURE
     Float diffuse = 1.0f - lobes->glossy_share;
@@ -188,7 +176,7 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
         ReceiverCode receiver = surface_receiver(scene->surfaces, &surface, &lobes);
 #endif
 #if HAS_CAUSTICS
-        CausticGuide guide = caustic_guide(scene->caustics, surface.position, has_diffuse_lobe(&lobes));
+        CausticGuide guide = caustic_guide(scene->caustics, surface.position, has_lobe_of(lobes.lobes, DIFFUSE_LOBES));
 #endif
 #if HAS_LIGHTS
         shadows = sample_direct_light(stage, block, shadows, scene, sample, &path, &surface, &lobes GUIDE_ARGUMENT RECEIVER_ARGUMENT);
