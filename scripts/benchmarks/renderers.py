@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from common import comparable_scene, pin, run_wavelobe
-from luxcore_peer import environment as luxcore_peer_environment
+import luxcore_peer
 from scene_facts import Missing
 
 
@@ -52,7 +52,7 @@ class Worker:
         command = [sys.executable, __file__, kind, setting, source, str(size), str(threads), self.picture]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                                         preexec_fn=lambda: pin(threads),
-                                        env={**os.environ, **(luxcore_peer_environment() if kind == "luxcore" else {})})
+                                        env={**os.environ, **(luxcore_peer.environment() if kind == "luxcore" else {})})
         hello = self.answer()
         if "missing" in hello:
             self.close()
@@ -115,13 +115,11 @@ def cycles_peer(setting, source, size, threads):
     return CyclesPeer(comparable_scene(source, size, 1), threads)
 
 
-def luxcore_peer(setting, source, size, threads):
-    from luxcore_peer import LuxCorePeer
-
-    return LuxCorePeer(comparable_scene(source, size, 1), threads)
+def luxcore(setting, source, size, threads):
+    return luxcore_peer.LuxCorePeer(comparable_scene(source, size, 1), threads)
 
 
-PEERS = {"mitsuba": MitsubaPeer, "cycles": cycles_peer, "luxcore": luxcore_peer}
+PEERS = {"mitsuba": MitsubaPeer, "cycles": cycles_peer, "luxcore": luxcore}
 
 
 def peer_settings(names):

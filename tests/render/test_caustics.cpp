@@ -1,7 +1,6 @@
 // Paths that photons guide to caustics: the same mean, with less noise.
 #include "render/flatten.h"
-#include "support/many_features.h"
-#include "support/render.h"
+#include "support/agreement.h"
 
 namespace wavelobe::test {
 namespace {
@@ -38,18 +37,8 @@ double mean_square_difference(const Image& a, const Image& b) {
 
 TEST(Caustics, GuidedPathsFindTheSameLight) {
     const Scene scene = glass_ball();
-    Claim claim("Light transport", "Paths guided to caustics against paths that are not: mean of the picture", "standard errors");
     const int samples = quick_or_full(1024, 16384);
-    const Rendering guided = render(scene, with(true, 1, samples)), plain = render(scene, with(false, 2, samples));
-    glm::dvec3 sum{0.0}, squares{0.0};
-    for (std::size_t i = 0; i < guided.image.rgb.size() / 3; ++i) {
-        const glm::dvec3 d = pixel(guided.image, i) - pixel(plain.image, i);
-        sum += d;
-        squares += d * d;
-    }
-    for (glm::length_t c = 0; c < 3; ++c) claim.observe(std::abs(sum[c]) / std::sqrt(squares[c]));
-    claim.count(guided.stats.samples + plain.stats.samples);
-    claim.at_most(4.0);
+    expect_agreement("Paths guided to caustics against paths that are not", scene, with(true, 1, samples), scene, with(false, 2, samples));
 }
 
 TEST(Caustics, GuidedPathsMakeLessNoise) {

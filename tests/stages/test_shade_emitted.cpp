@@ -84,12 +84,11 @@ void expect_weighted_against_light_sample(StageBench& bench) {
             const std::span<const glm::vec3, 3> t = bench.scene().triangles[triangle];
             const glm::dvec3 hit = 0.5 * glm::dvec3(t[0]) + 0.25 * glm::dvec3(t[1]) + 0.25 * glm::dvec3(t[2]);
             const struct Light& chosen = bench.scene().lights[lights[triangle]];
-            const double choice = reference_probability(bench.scene().light_tree, chosen.place,
-                                                              ReferenceReceiver{hit - 4.0 * glm::normalize(glm::dvec3(direction)), {}});
+            const glm::dvec3 from = hit - 4.0 * glm::normalize(glm::dvec3(direction));
+            const double choice = reference_probability(bench.scene().light_tree, chosen.place, ReferenceReceiver{from, {}});
             ASSERT_GT(choice, 0.0);
             // Large triangles are sampled by solid angle.
             const bool wide = chosen.kind == LIGHT_SPHERICAL_TRIANGLE;
-            const glm::dvec3 from = hit - 4.0 * glm::normalize(glm::dvec3(direction));
             const double light = choice * (wide ? 1.0 / solid_angle(t, from) : 16.0 / (cosine * areas[triangle]));
             const double p2 = static_cast<double>(pdf) * static_cast<double>(pdf);
             const Rgb radiance = triangle < 2 ? first_radiance : second_radiance;
