@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/photons.h"
+#include "render/driver.h"
 
 namespace wavelobe {
 namespace {
@@ -29,7 +29,6 @@ public:
     void prepare(const Program& program) override {
         kernel_.emplace(program, "render_tiles");
         kernel_->bind(context_.buffers.table());
-        shoot_photons(context_, program, threads_);
         kernel_->launch(context_.device, threads_);
         context_.device.finish();
     }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "cl/cache_lock.h"
@@ -12,6 +13,7 @@
 #include "render/flatten.h"
 #include "render/flatten_caustics.h"
 #include "render/memory.h"
+#include "render/photons.h"
 #include "render/picture_channels.h"
 #include "scene/fault.h"
 
@@ -127,6 +129,7 @@ struct Renderer::State {
     DeviceBuffers buffers;
     StageTimer timer;
     std::unique_ptr<BlockDriver> driver;
+    std::optional<PhotonPass> photons;  // of scenes with caustics, until it has run
 };
 
 Renderer::State::State(const Device& device_in, const Scene& scene, const RenderSettings& settings_in)
@@ -179,6 +182,7 @@ void Renderer::State::build_program() {
     stats.setup_parts["program_build"] = seconds_since(start);
     start = Clock::now();
     driver->prepare(program);
+    if (scene_data.features.caustics) photons.emplace(device, buffers, program);
     stats.setup_parts["first_launches"] = seconds_since(start);
 }
 
@@ -193,6 +197,8 @@ bool Renderer::State::render(const ProgressCallback& progress) {
     const auto start = Clock::now();
     // Not even emitters are seen along a path of no edges.
     const bool anything = scene_data.parameters.max_depth > 0;
+    if (photons) photons->shoot();
+    photons.reset();
     while (anything && !scheduler.finished()) {
         if (settings.driver == Driver::replay) {
             driver->step(no_limit);

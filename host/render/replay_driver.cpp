@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include "render/photons.h"
+#include "render/driver.h"
 
 namespace wavelobe {
 namespace {
@@ -47,7 +47,6 @@ public:
     void prepare(const Program& program) override {
         kernel_.emplace(program, "replay_path");
         kernel_->bind(context_.buffers.table());
-        shoot_photons(context_, program, 1);
     }
 
     void step(double /*seconds*/) override {

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/photons.h"
+#include "render/driver.h"
 
 namespace wavelobe {
 namespace {
@@ -31,7 +31,6 @@ public:
             run(stage);
         }
         context_.device.finish();
-        shoot_photons(context_, program, headers_.size());
     }
 
     // One vertex of every path in flight.

@@ -1,4 +1,4 @@
-// Directions from which caustics arrive, as photons have found them: half of the samples of diffuse surfaces go there. A proposal and
+// Directions from which caustics arrive, as photons have found them: a share of the samples of diffuse surfaces goes there. A proposal and
 // no more: densities are mixtures with those of the lobes, whatever the maps hold.
 // After Jensen 1995, "Importance Driven Path Tracing Using the Photon Map".
 #ifndef WAVELOBE_CAUSTICS_GUIDE_H
@@ -7,9 +7,6 @@
 #include "core/math.h"
 #include "core/vector.h"
 #include "shared/caustics.h"
-
-// Of samples in cells that have a map.
-#define GUIDED_SHARE 0.5f
 
 typedef struct {
     global const struct CausticGrid *grid;
@@ -38,7 +35,8 @@ INLINE CausticGuide caustic_guide(CausticView v, Vec3 position, Int wanted) {
     UInt cell = caustic_cell(v.grid, position, &within);
     UInt map = gather_uint(v.cells, cell);
     Int there = wanted & within & (map != (UInt)0u);
-    CausticGuide g = {SELECT(there, map - (UInt)1u, (UInt)0u) * CAUSTIC_MAP_FLOATS, SELECT(there, (Float)GUIDED_SHARE, ZERO)};
+    CausticGuide g = {SELECT(there, map - (UInt)1u, (UInt)0u) * CAUSTIC_MAP_FLOATS, ZERO};
+    if (any_lane(there)) g.share = SELECT(there, gather(v.maps, g.map + CAUSTIC_SHARE), ZERO);
     return g;
 }
 

@@ -33,10 +33,12 @@ WAVELOBE_CHECK_SIZE(CausticGrid, 60);
 #define CAUSTIC_COLUMNS 16u
 #define CAUSTIC_BINS (CAUSTIC_ROWS * CAUSTIC_COLUMNS)
 #define CAUSTIC_MAPS 4096u // at the most
-// Floats of a map: running sums of the rows, running sums within each row, the density (solid angle) of each bin.
+// Floats of a map: running sums of the rows, running sums within each row, the density (solid angle) of each bin, and the share of
+// samples that follow it.
 #define CAUSTIC_SUMS_WITHIN CAUSTIC_ROWS
 #define CAUSTIC_DENSITIES (CAUSTIC_ROWS + CAUSTIC_BINS)
-#define CAUSTIC_MAP_FLOATS (CAUSTIC_ROWS + 2u * CAUSTIC_BINS)
+#define CAUSTIC_SHARE (CAUSTIC_ROWS + 2u * CAUSTIC_BINS)
+#define CAUSTIC_MAP_FLOATS (CAUSTIC_SHARE + 1u)
 
 #define PHOTONS_A_BATCH 4096u
 #define PHOTON_ROW 0x100000u // of the film, in no picture: photons share no random number with paths
