@@ -39,7 +39,7 @@ struct BlockHeader {
     Uint32 tile_x, tile_y;     // film coordinates of the tile's first pixel
     Uint32 first_sample;       // index of the first sample
     Uint32 path_count;         // TILE_PIXELS * samples; path id = sample * TILE_PIXELS + pixel of the tile
-    Uint32 next_path;          // first id not yet started
+    Uint32 next_path;          // how many are started, in the order of stages/generate.h
     Uint32 count[QUEUE_COUNT]; // items in each queue
     Uint32 nonfinite_path;     // id of a path whose sample was not finite; WAVELOBE_NONE: none
     Uint32 started;            // camera rays of the last round

@@ -26,6 +26,13 @@ glm::dvec2 film_position(const Scene& scene, const glm::vec3& direction) {
     return {0.5 * scene.film.width - d.x / d.z / pixel_size, 0.5 * scene.film.height - d.y / d.z / pixel_size};
 }
 
+// The n-th path that a block of so many samples a pixel starts.
+std::uint32_t started_id(std::uint32_t n, std::uint32_t samples, int lanes) {
+    const std::uint32_t together = std::min(samples & (0U - samples), static_cast<std::uint32_t>(lanes));
+    const std::uint32_t turn = n / together, pixel = turn % TILE_PIXELS, sample = turn / TILE_PIXELS * together + n % together;
+    return sample * TILE_PIXELS + pixel;
+}
+
 TEST_P(Generate, StartsThePathsInsideTheWindow) {
     const Scene scene = film_scene();
     StageBench bench(scene, GetParam(), 1024);
@@ -36,7 +43,8 @@ TEST_P(Generate, StartsThePathsInsideTheWindow) {
     bench.run("generate");
     EXPECT_EQ(bench.header().next_path, 2 * TILE_PIXELS);
     std::vector<std::uint32_t> expected;
-    for (std::uint32_t id = 0; id < 2 * TILE_PIXELS; ++id) {
+    for (std::uint32_t n = 0; n < 2 * TILE_PIXELS; ++n) {
+        const std::uint32_t id = started_id(n, 2, GetParam());
         if (TILE_X(id) < 8 && TILE_Y(id) < 8) expected.push_back(id);
     }
     EXPECT_EQ(expected.size(), 2U * 64U);
@@ -82,8 +90,9 @@ TEST_P(Generate, SamplesDependOnPixelAndIndexAlone) {
         bench.header().path_count = 2 * TILE_PIXELS;
         bench.header().next_path = 0;
         bench.run("generate");
-        EXPECT_EQ(bench.path(QUEUE_RAYS, id).id, id);
-        return bench.path(QUEUE_RAYS, id).direction;
+        std::uint32_t i = 0;
+        while (i < 2 * TILE_PIXELS && bench.path(QUEUE_RAYS, i).id != id) ++i;
+        return bench.path(QUEUE_RAYS, i).direction;
     };
     const std::uint32_t pixel = 77;
     const glm::vec3 sample5 = direction(5, pixel);
@@ -113,7 +122,27 @@ TEST_P(Generate, FillsFreeSlotsAndKeepsTheOthers) {
         EXPECT_EQ(bench.path(QUEUE_RAYS, i).throughput, waiting[i].throughput);
         EXPECT_EQ(bench.path(QUEUE_RAYS, i).depth, 3U);
     }
-    for (std::uint32_t i = 0; i < started; ++i) EXPECT_EQ(bench.path(QUEUE_RAYS, 10 + i).id, 2 * TILE_PIXELS + i);
+    for (std::uint32_t i = 0; i < started; ++i) EXPECT_EQ(bench.path(QUEUE_RAYS, 10 + i).id, started_id(2 * TILE_PIXELS + i, 4, lanes));
+}
+
+// Rays of one pixel are the most alike.
+TEST_P(Generate, SamplesOfAPixelStartTogether) {
+    const auto lanes = static_cast<std::uint32_t>(GetParam());
+    for (const std::uint32_t samples : {1U, 3U, 8U, 12U, 16U}) {
+        StageBench bench(film_scene(), GetParam(), 1024);
+        bench.header().path_count = samples * TILE_PIXELS;
+        bench.header().next_path = 0;
+        bench.run("generate");
+        std::vector<bool> seen(std::size_t{samples} * TILE_PIXELS);
+        const std::uint32_t together = samples % 2 == 1 ? 1 : std::min(samples == 12 ? 4U : samples, lanes);
+        for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
+            const std::uint32_t id = bench.path(QUEUE_RAYS, i).id;
+            ASSERT_LT(id, seen.size());
+            ASSERT_FALSE(seen[id]) << "started twice";
+            seen[id] = true;
+            EXPECT_EQ(id % TILE_PIXELS, i / together % TILE_PIXELS) << samples << " samples, path " << i;
+        }
+    }
 }
 
 TEST_P(Generate, DoesNothingWhenAllAreStarted) {
