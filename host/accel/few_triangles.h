@@ -11,6 +11,7 @@ namespace wavelobe {
 struct FewTriangleSet {
     std::vector<float> vertices;  // 3 each, distinct, in the unit of the summary
     std::vector<FewTriangle> triangles;
+    std::vector<float> corners;   // FEW_CORNER_ROWS rows of all triangles, in that unit too
     std::vector<FewAnalytic> analytics;
     FewSummary summary{};
 };

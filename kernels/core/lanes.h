@@ -75,6 +75,12 @@ typedef uint UInt;
 #define LESSER(a, b) ((a) < (b) ? (a) : (b))
 #define GREATER(a, b) ((a) > (b) ? (a) : (b))
 
+#if LANES == 1
+#define FIRST_LANE(v) (v)
+#else
+#define FIRST_LANE(v) (v).s0
+#endif
+
 #define TRUE_MASK ((Int)(LANE_INDEX >= 0u))
 #define ZERO ((Float)0.0f)
 #define ONE ((Float)1.0f)
@@ -133,6 +139,22 @@ INLINE int any_lane(Int m) {
     return (words.x | words.y) != 0ul;
 #else
     return lane_bits(m) != 0u;
+#endif
+}
+
+// The least value of all lanes.
+INLINE float least_lane(Float v) {
+#if LANES == 1
+    return v;
+#else
+#if LANES == 16
+    float8 a = LESSER(v.lo, v.hi);
+#else
+    float8 a = v;
+#endif
+    float4 b = LESSER(a.lo, a.hi);
+    float2 c = LESSER(b.lo, b.hi);
+    return LESSER(c.x, c.y);
 #endif
 }
 

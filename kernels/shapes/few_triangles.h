@@ -7,6 +7,7 @@
 #ifndef WAVELOBE_SHAPES_FEW_TRIANGLES_H
 #define WAVELOBE_SHAPES_FEW_TRIANGLES_H
 
+#include "shapes/few_pencil.h"
 #include "shapes/near_plane.h"
 #include "shapes/ray.h"
 #include "shared/scene.h"
@@ -18,6 +19,7 @@ typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
     global const struct FewSummary *summary;
+    global const float *corners; // FEW_CORNER_ROWS
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     global const struct FewAnalytic *few_analytics;
@@ -41,15 +43,17 @@ typedef struct {
     Float x[FEW_VERTICES_MAX], y[FEW_VERTICES_MAX], z[FEW_VERTICES_MAX];
 } TurnedVertices;
 
+INLINE void turn_vertex(FewTriangles g, uint i, Vec3 origin, Frame around_ray, TurnedVertices *turned) {
+    global const float *p = g.vertices + 3u * i;
+    Vec3 v = to_local(around_ray, vec3(p[0] - origin.x, p[1] - origin.y, p[2] - origin.z));
+    turned->x[i] = v.x;
+    turned->y[i] = v.y;
+    turned->z[i] = v.z;
+}
+
 INLINE void turn_vertices(FewTriangles g, Vec3 origin, Vec3 direction, TurnedVertices *turned) {
     Frame f = frame_of_normal(direction);
-    for (uint i = 0u; i < g.summary->vertex_count; i++) {
-        global const float *p = g.vertices + 3u * i;
-        Vec3 v = to_local(f, vec3(p[0] - origin.x, p[1] - origin.y, p[2] - origin.z));
-        turned->x[i] = v.x;
-        turned->y[i] = v.y;
-        turned->z[i] = v.z;
-    }
+    for (uint i = 0u; i < g.summary->vertex_count; i++) turn_vertex(g, i, origin, f, turned);
 }
 
 // What the test of one triangle finds: areas opposite to the second and third corner and their sum, all three taken twice and
@@ -160,25 +164,55 @@ typedef struct {
 #include "shapes/few_analytic.h"
 #endif
 
+typedef struct {
+    TriangleTest test;
+    UInt slot;
+} NearestTriangle;
+
+INLINE void meet_triangle(FewTriangles g, const TurnedVertices *turned, uint i, const LaneRay *ray, NearestTriangle *nearest KEY_PARAMETER) {
+    TriangleTest t, *n = &nearest->test;
+    Int hit = hit_triangle(g, turned, i, ray, n->depth, n->area, &t PASS_KEY);
+    n->depth = SELECT(hit, t.depth, n->depth);
+    n->area = SELECT(hit, t.area, n->area);
+    n->wb = SELECT(hit, t.wb, n->wb);
+    n->wc = SELECT(hit, t.wc, n->wc);
+    nearest->slot = SELECT(hit, (UInt)g.triangles[i].slot, nearest->slot);
+}
+
+#if HAS_PENCILS
+// Those that rays of the pencil may meet, in the order of all.
+INLINE void meet_in_pencil(FewTriangles g, const Pencil *pencil, const LaneRay *ray, TurnedVertices *turned, NearestTriangle *nearest KEY_PARAMETER) {
+    Frame f = frame_of_normal(ray->direction);
+    uint n = g.summary->triangle_count;
+    for (uint first = 0u; first < n; first += LANES) {
+        uint bits = few_in_pencil(g.corners, first, pencil) & lane_bits(LANE_INDEX + (UInt)first < (UInt)n);
+        while (bits) {
+            POP_LOWEST_BIT(bits, k);
+            for (uint c = 0u; c < 3u; c++) turn_vertex(g, g.triangles[first + k].corner[c], ray->origin, f, turned);
+            meet_triangle(g, turned, first + k, ray, nearest PASS_KEY);
+        }
+    }
+}
+#endif
+
 // The nearest hit of each ray in (0, limit).
 INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from KEY_PARAMETER) {
     LaneRay ray = lane_ray(g, origin, direction, from);
     TurnedVertices turned;
-    turn_vertices(g, ray.origin, direction, &turned);
-    TriangleTest nearest = {ZERO, ZERO, ONE, limit * g.summary->per_length, TRUE_MASK};
-    UInt slot = (UInt)HIT_NONE;
-    for (uint i = 0u; i < g.summary->triangle_count; i++) {
-        TriangleTest t;
-        Int hit = hit_triangle(g, &turned, i, &ray, nearest.depth, nearest.area, &t PASS_KEY);
-        nearest.depth = SELECT(hit, t.depth, nearest.depth);
-        nearest.area = SELECT(hit, t.area, nearest.area);
-        nearest.wb = SELECT(hit, t.wb, nearest.wb);
-        nearest.wc = SELECT(hit, t.wc, nearest.wc);
-        slot = SELECT(hit, (UInt)g.triangles[i].slot, slot);
+    NearestTriangle nearest = {{ZERO, ZERO, ONE, limit * g.summary->per_length, TRUE_MASK}, (UInt)HIT_NONE};
+#if HAS_PENCILS
+    Pencil pencil;
+    if (find_pencil(ray.origin, direction, ray.unsure, &pencil)) {
+        meet_in_pencil(g, &pencil, &ray, &turned, &nearest PASS_KEY);
+    } else
+#endif
+    {
+        turn_vertices(g, ray.origin, direction, &turned);
+        for (uint i = 0u; i < g.summary->triangle_count; i++) meet_triangle(g, &turned, i, &ray, &nearest PASS_KEY);
     }
-    Int found = slot != (UInt)HIT_NONE;
-    LaneHit h = {SELECT(found, nearest.depth / nearest.area * (1.0f / g.summary->per_length), limit), nearest.wb / nearest.area,
-                 nearest.wc / nearest.area, slot};
+    Int found = nearest.slot != (UInt)HIT_NONE;
+    LaneHit h = {SELECT(found, nearest.test.depth / nearest.test.area * (1.0f / g.summary->per_length), limit),
+                 nearest.test.wb / nearest.test.area, nearest.test.wc / nearest.test.area, nearest.slot};
 #if HAS_ANALYTIC
     closest_few_analytic(g, origin, direction, &h PASS_KEY);
 #endif

@@ -31,10 +31,11 @@ typedef FewTriangles Geometry;
 #define FEW_ANALYTIC_PARAMETER
 #define FEW_ANALYTIC_ARGUMENT
 #endif
-#define GEOMETRY_PARAMETERS \
-    global const float *few_vertices, global const struct FewTriangle *few_triangles FEW_ANALYTIC_PARAMETER OPACITY_PARAMETER
+#define GEOMETRY_PARAMETERS                                                                                                  \
+    global const float *few_vertices, global const struct FewTriangle *few_triangles, global const float *few_corners        \
+        FEW_ANALYTIC_PARAMETER OPACITY_PARAMETER
 #define GEOMETRY_VIEW \
-    {few_vertices, few_triangles, &parameters->few FEW_ANALYTIC_ARGUMENT OPACITY_ARGUMENT}
+    {few_vertices, few_triangles, &parameters->few, few_corners FEW_ANALYTIC_ARGUMENT OPACITY_ARGUMENT}
 
 #else
 #include "shapes/trace_groups.h"
@@ -49,12 +50,6 @@ typedef FewTriangles Geometry;
 #define GEOMETRY_PARAMETERS global const uchar *bvh_nodes ANALYTIC_ORDER_PARAMETER OPACITY_PARAMETER
 #define GEOMETRY_VIEW \
     {bvh_nodes, (global const uchar *)triangle_blocks ANALYTIC_ORDER_ARGUMENT OPACITY_ARGUMENT INSTANCES_ARGUMENT}
-
-#if LANES == 1
-#define FIRST_LANE(v) (v)
-#else
-#define FIRST_LANE(v) (v).s0
-#endif
 
 #if HAS_MASKS
 INLINE uint slot_key(Geometry g, Block block, Queue q, uint direction, uint path, uint i) {

@@ -59,17 +59,6 @@ typedef struct {
     Float shear_x, shear_y, shear_z;
 } Packet;
 
-INLINE float least_lane(Float v) {
-#if LANES == 16
-    float8 a = LESSER(v.lo, v.hi);
-#else
-    float8 a = v;
-#endif
-    float4 b = LESSER(a.lo, a.hi);
-    float2 c = LESSER(b.lo, b.hi);
-    return LESSER(c.x, c.y);
-}
-
 INLINE float least_of(uint rays, Float v) { return least_lane(SELECT(mask_of_bits(rays), v, (Float)INFINITY)); }
 
 INLINE float greatest_of(uint rays, Float v) { return -least_of(rays, -v); }

@@ -35,6 +35,7 @@ const std::vector<Known> known_constants{
     {"lights/light_tree.h", "#define LEAST_DISTANCE2 0x1p-100f", "keeps importances finite"},
     {"lights/light_tree.h", "#define LEAST_SHALLOW 0x1p-12f", "where the digits of a random number run out"},
     {"lights/envmap.h", "#define LEAST_POLE_SINE 0x1p-36f", "keeps a density finite"},
+    {"shapes/few_pencil.h", "#define PENCIL_VOLUME 0x1p-10f", "where rounding could tell otherwise: such triangles are tested"},
     {"shapes/box_test.h", "least = 0x1p-60f", "component of a unit direction that divides"},
     {"shapes/box_test.h", "least = (Float)0x1p-60f", "the same of lanes"},
 };

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <numeric>
 
 #include "accel/few_triangles.h"
 #include "support/ray_sets.h"
@@ -19,8 +20,9 @@ const char* const source = R"(
 #define RAY(k) load(rays + (size_t)(k) * count + i)
 
 kernel void trace(global const float *vertices, global const struct FewTriangle *triangles,
-                  global const struct FewSummary *summary, global const float *rays, uint count, global float *hits) {
-    FewTriangles geometry = {vertices, triangles, summary};
+                  global const struct FewSummary *summary, global const float *corners, global const float *rays, uint count,
+                  global float *hits) {
+    FewTriangles geometry = {vertices, triangles, summary, corners};
     uint first = (uint)get_global_id(0) * 16u;
     for (uint i = first; i < first + 16u; i += LANES) {
         Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
@@ -35,6 +37,42 @@ kernel void trace(global const float *vertices, global const struct FewTriangle 
 }
 )";
 
+// How many triangles are left for each group of rays: all of them where the rays are no pencil.
+const char* const pencil_source = R"(
+#include "shapes/few_triangles.h"
+#define RAY(k) load(rays + (size_t)(k) * count + i)
+
+kernel void count_left(global const struct FewSummary *summary, global const float *corners, global const float *rays, uint count,
+                       global uint *left) {
+    uint i = (uint)get_global_id(0) * LANES;
+    FewTriangles geometry = {0, 0, summary, corners};
+    Vec3 direction = vec3(RAY(3), RAY(4), RAY(5));
+    LaneRay ray = lane_ray(geometry, vec3(RAY(0), RAY(1), RAY(2)), direction, (UInt)HIT_NONE);
+    Pencil pencil;
+    left[get_global_id(0)] = summary->triangle_count;
+    if (!find_pencil(ray.origin, direction, ray.unsure, &pencil)) return;
+    left[get_global_id(0)] = 0u;
+    for (uint first = 0u; first < summary->triangle_count; first += LANES) {
+        uint present = lane_bits(LANE_INDEX + (UInt)first < (UInt)summary->triangle_count);
+        left[get_global_id(0)] += popcount(few_in_pencil(corners, first, &pencil) & present);
+    }
+}
+)";
+
+// Eight arrays of `count`, a multiple of 16: origins, directions, limits and what is left.
+std::vector<float> packed_rays(const std::vector<TestRay>& rays, std::size_t count) {
+    std::vector<float> packed(8 * count, 0.0F);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            packed[k * count + i] = rays[i].origin[static_cast<glm::length_t>(k)];
+            packed[(3 + k) * count + i] = rays[i].direction[static_cast<glm::length_t>(k)];
+        }
+        packed[6 * count + i] = rays[i].limit;
+        std::memcpy(&packed[7 * count + i], &rays[i].from, sizeof(float));
+    }
+    return packed;
+}
+
 class FewProbe {
 public:
     explicit FewProbe(int lanes = 16, bool portable = false)
@@ -42,21 +80,14 @@ public:
 
     std::vector<TestHit> trace(const FewTriangleSet& few, const std::vector<TestRay>& rays) {
         const std::size_t count = (rays.size() + 15) / 16 * 16;
-        std::vector<float> packed(8 * count, 0.0F);
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                packed[k * count + i] = rays[i].origin[static_cast<glm::length_t>(k)];
-                packed[(3 + k) * count + i] = rays[i].direction[static_cast<glm::length_t>(k)];
-            }
-            packed[6 * count + i] = rays[i].limit;
-            std::memcpy(&packed[7 * count + i], &rays[i].from, sizeof(float));
-        }
+        const std::vector<float> packed = packed_rays(rays, count);
         std::vector<float> hits(5 * count);
         const auto ray_count = static_cast<cl_uint>(count);
         const std::vector<float> vertices = few.vertices.empty() ? std::vector<float>(3) : few.vertices;
         const std::vector<FewSummary> summary{few.summary};
+        const std::vector<float> corners = few.corners.empty() ? std::vector<float>(FEW_CORNER_ROWS * FEW_TRIANGLES_MAX) : few.corners;
         const std::vector<FewTriangle> triangles = few.triangles.empty() ? std::vector<FewTriangle>(1) : few.triangles;
-        probe_.run("trace", count / 16, vertices, triangles, summary, packed, ray_count, hits);
+        probe_.run("trace", count / 16, vertices, triangles, summary, corners, packed, ray_count, hits);
         std::vector<TestHit> out(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             out[i].t = hits[i];
@@ -126,6 +157,55 @@ TEST(FewTriangles, SameBitsAtEveryWidth) {
     EXPECT_EQ(FewProbe(1).trace(scene.few, rays), hits);
     EXPECT_EQ(FewProbe(8).trace(scene.few, rays), hits);
     EXPECT_EQ(FewProbe(16, true).trace(scene.few, rays), hits) << "portable twins";
+}
+
+// Groups of 16 rays from one point, within `spread` of each other; every other point lies in the plane of a triangle.
+std::vector<TestRay> pencils(const Triangles& triangles, std::size_t count, float spread, unsigned seed) {
+    Generator random(seed);
+    std::vector<TestRay> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        const TriangleVertices& t = triangles[i % triangles.size()];
+        const glm::vec3 weights = uniform_in_cube(random, 4.0F);
+        const glm::vec3 in_plane = t[0] + weights.x * (t[1] - t[0]) + weights.y * (t[2] - t[0]);
+        const glm::vec3 origin = i % 2 == 0 ? in_plane : uniform_in_cube(random, 3.0F);
+        const glm::vec3 axis = i % 3 == 0 ? uniform_direction(random) : glm::normalize(t[i % 3] - origin);
+        for (int k = 0; k < 16; ++k) rays.push_back({origin, glm::normalize(axis + spread * uniform_direction(random))});
+    }
+    return rays;
+}
+
+// Triangles of every shape, down to needles.
+Triangles soup_with_needles(unsigned seed) {
+    Triangles triangles = triangle_soup(42, 0.7F, 1.0F, {}, seed);
+    for (std::size_t i = 0; i < triangles.size(); i += 3) {
+        triangles[i][2] = glm::mix(triangles[i][0], triangles[i][1], 0.3F) + std::ldexp(1.0F, -static_cast<int>(i)) * triangles[i][2];
+    }
+    return triangles;
+}
+
+TEST(FewTriangles, PencilsMeetWhatSingleRaysMeet) {
+    for (const float spread : {0.0F, 1e-3F, 0.03F, 0.3F, 0.9F}) {
+        const SmallScene scene(soup_with_needles(7));
+        const std::vector<TestRay> rays = pencils(scene.triangles, 4000, spread, 8);
+        const std::vector<TestHit> hits = FewProbe(1).trace(scene.few, rays);
+        EXPECT_EQ(probe().trace(scene.few, rays), hits) << spread;
+        EXPECT_EQ(FewProbe(8).trace(scene.few, rays), hits) << spread;
+    }
+}
+
+TEST(FewTriangles, PencilsAreNotTestedAgainstWhatLiesBesideThem) {
+    const SmallScene scene(triangle_soup(42, 0.3F, 1.0F, {}, 9));
+    const auto left = [&](const std::vector<TestRay>& rays) {
+        const std::vector<float> packed = packed_rays(rays, rays.size());
+        const std::vector<FewSummary> summary{scene.few.summary};
+        std::vector<std::uint32_t> of_group(rays.size() / 16);
+        const auto count = static_cast<cl_uint>(rays.size());
+        Probe(pencil_source).run("count_left", of_group.size(), summary, scene.few.corners, packed, count, of_group);
+        return std::accumulate(of_group.begin(), of_group.end(), 0.0) / static_cast<double>(of_group.size());
+    };
+    EXPECT_LT(left(pencils(scene.triangles, 1000, 0.01F, 10)), 12.0);
+    EXPECT_EQ(left(pencils(scene.triangles, 1000, 3.0F, 11)), 42.0) << "no pencils";
+    EXPECT_EQ(left(random_rays(16000, 1.0F, {}, 12)), 42.0) << "no common origin";
 }
 
 void expect_nothing_escapes(const ClosedMesh& mesh, float inner_half, const glm::vec3& center) {

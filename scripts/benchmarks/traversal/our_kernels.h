@@ -17,11 +17,12 @@ struct MeshBuffers {
           blocks(Buffer::of<TriangleBlock>(device, bvh.blocks)),
           few_vertices(Buffer::of<float>(device, few ? set.vertices : std::vector<float>(3))),
           few_triangles(Buffer::of<FewTriangle>(device, few ? set.triangles : std::vector<FewTriangle>(1))),
-          few_summary(Buffer::of<FewSummary>(device, std::vector<FewSummary>{set.summary})) {}
+          few_summary(Buffer::of<FewSummary>(device, std::vector<FewSummary>{set.summary})),
+          few_corners(Buffer::of<float>(device, few ? set.corners : std::vector<float>(1))) {}
 
     bool few;
     int walks;
-    Buffer nodes, blocks, few_vertices, few_triangles, few_summary;
+    Buffer nodes, blocks, few_vertices, few_triangles, few_summary, few_corners;
 };
 
 class OurKernels {
