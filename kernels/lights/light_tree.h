@@ -165,7 +165,7 @@ INLINE uint walk_down(global const struct LightNode *tree, LightWalks *w, uint i
     uint shines = mine > 0.0f;
     float before = w->probability.value[i], after = shines ? before * (mine / total) : 0.0f;
     float rest = LESSER(GREATER((target - below) / mine, 0.0f), BELOW_ONE);
-    w->u.value[i] = (before >= LEAST_SHALLOW) & (after < LEAST_SHALLOW) ? w->u_deep.value[i] : rest;
+    w->u.value[i] = ((before >= LEAST_SHALLOW) & (after < LEAST_SHALLOW)) ? w->u_deep.value[i] : rest;
     w->probability.value[i] = after;
     uint child = node->child[chosen];
     w->child.value[i] = child;
