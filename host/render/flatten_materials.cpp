@@ -93,7 +93,9 @@ TexturedFloat MaterialFlattener::scalar(const Parameter& parameter) {
 }
 
 void MaterialFlattener::fill(DeviceMaterial& out, const Diffuse& m) {
-    out.lobes = bit(LOBE_LAMBERT);
+    // Black surfaces, lamps as a rule, have nothing to go on with: paths end there.
+    const bool black = !m.reflectance.texture && m.reflectance.value == glm::vec3(0.0F);
+    out.lobes = black ? 0 : bit(LOBE_LAMBERT);
     out.diffuse = rgb(m.reflectance);
 }
 

@@ -22,6 +22,36 @@ typedef struct {
     Rgb throughput;
 } Continuation;
 
+// Where the queues of the classes end.
+typedef struct {
+    uint delta, glossy, diffuse;
+} ClassEnds;
+
+INLINE void move_to_classes(Block block, ClassEnds *ends, Queue rays, uint i, const Continuation *c) {
+#if HAS_DELTA_LOBES
+    uint d = lane_bits(c->delta);
+    if (d) ends->delta = move_paths(QUEUE(block, DELTA), ends->delta, rays, i, c->throughput, d);
+#endif
+#if HAS_GLOSSY_LOBES
+    uint g = lane_bits(c->glossy);
+    if (g) ends->glossy = move_paths(QUEUE(block, GLOSSY), ends->glossy, rays, i, c->throughput, g);
+#endif
+#if HAS_DIFFUSE_LOBES
+    uint f = lane_bits(c->diffuse);
+    if (f) ends->diffuse = move_paths(QUEUE(block, DIFFUSE), ends->diffuse, rays, i, c->throughput, f);
+#endif
+}
+
+// Of shapes all of whose materials are of one class.
+INLINE Continuation class_of_shape(UInt flags, Int scattering, Rgb throughput) {
+    Continuation c;
+    c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
+    c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
+    c.diffuse = scattering & ((flags & (UInt)SHAPE_HAS_DIFFUSE) != (UInt)0u);
+    c.throughput = throughput;
+    return c;
+}
+
 #if HAS_LOBE_CHOICE
 // Some material has lobes of several classes, or differs between its sides: the surface decides.
 INLINE Continuation choose_class(Block block, const SceneView *scene, const TracedPath *path, Int scattering) {
@@ -95,11 +125,37 @@ INLINE uint pass_through(Queue rays, uint at, uint i, SurfaceView view, Int pass
 }
 #endif
 
+#if HAS_LOBE_CHOICE && !PASSES_BEHIND
+// Paths on surfaces that decide wait at the start of the ray queue until there is a vector full of them. So they come to the ends of
+// their queues, too, and do not hold up the simple ones there.
+#define CHOOSES_LATER 1
+
+INLINE Int is_undecided(UInt flags) {
+    UInt classes = flags & (UInt)(SHAPE_HAS_DELTA | SHAPE_HAS_GLOSSY | SHAPE_HAS_DIFFUSE);
+    return (classes & (classes - (UInt)1u)) != (UInt)0u;
+}
+
+INLINE void sort_undecided(Block block, const SceneView *scene, Queue rays, uint waiting, ClassEnds *ends) {
+    *rays.count = waiting;
+    for (uint i = 0u; i < waiting; i += LANES) {
+        TracedPath path = read_traced_path(rays, i);
+        Continuation c = choose_class(block, scene, &path, path.live);
+        move_to_classes(block, ends, rays, i, &c);
+    }
+}
+#else
+#define CHOOSES_LATER 0
+#endif
+
 INLINE uint run_sort_paths(Block block, const SceneView *scene) {
     global const struct RenderParameters *parameters = scene->parameters;
     Queue rays = QUEUE(block, RAYS);
     uint n = *rays.count;
-    uint passed = 0u, escaped = 0u, emitted = 0u, delta = 0u, glossy = 0u, diffuse = 0u;
+    uint passed = 0u, escaped = 0u, emitted = 0u;
+    ClassEnds ends = {0u, 0u, 0u};
+#if CHOOSES_LATER
+    uint waiting = 0u;
+#endif
     for (uint i = 0u; i < n; i += LANES) {
         Int live = lanes_below(i, n);
         UInt hit = read_uint(rays, PATH_HIT, i);
@@ -109,7 +165,7 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         uint out = lane_bits(live & !found);
         if (out) escaped = move_paths(QUEUE(block, ESCAPED), escaped, rays, i, throughput, out);
 #endif
-#if HAS_SURFACE_LIGHTS || !HAS_LOBE_CHOICE
+#if HAS_SURFACE_LIGHTS || !HAS_LOBE_CHOICE || CHOOSES_LATER
         UInt shape = gather_uint(scene->surfaces.primitive_shapes, primitive_of_hit(scene->surfaces, SELECT(found, hit, (UInt)0u)));
         UInt flags = GATHER_UINT_FIELD(scene->surfaces.shapes, Shape, shape, flags);
 #endif
@@ -133,42 +189,36 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         }
 #endif
         Int scattering = found & (depth + (UInt)1u < (UInt)parameters->max_depth);
-        Continuation c;
-#if HAS_LOBE_CHOICE
+#if HAS_LOBE_CHOICE && !CHOOSES_LATER
         TracedPath path = read_traced_path(rays, i);
         path.hit = SELECT(found, path.hit, (UInt)0u);
-        c = choose_class(block, scene, &path, scattering);
+        Continuation c = choose_class(block, scene, &path, scattering);
+#elif CHOOSES_LATER
+        Int undecided = scattering & is_undecided(flags);
+        Continuation c = class_of_shape(flags, scattering & !undecided, throughput);
 #else
-        c.delta = scattering & ((flags & (UInt)SHAPE_HAS_DELTA) != (UInt)0u);
-        c.glossy = scattering & ((flags & (UInt)SHAPE_HAS_GLOSSY) != (UInt)0u);
-        c.diffuse = scattering & ((flags & (UInt)SHAPE_HAS_DIFFUSE) != (UInt)0u);
-        c.throughput = throughput;
+        Continuation c = class_of_shape(flags, scattering, throughput);
 #endif
-#if HAS_DELTA_LOBES
-        uint d = lane_bits(c.delta);
-        if (d) delta = move_paths(QUEUE(block, DELTA), delta, rays, i, c.throughput, d);
-#endif
-#if HAS_GLOSSY_LOBES
-        uint g = lane_bits(c.glossy);
-        if (g) glossy = move_paths(QUEUE(block, GLOSSY), glossy, rays, i, c.throughput, g);
-#endif
-#if HAS_DIFFUSE_LOBES
-        uint f = lane_bits(c.diffuse);
-        if (f) diffuse = move_paths(QUEUE(block, DIFFUSE), diffuse, rays, i, c.throughput, f);
-#endif
-#if PASSES_BEHIND
+        move_to_classes(block, &ends, rays, i, &c);
         // Last, because it writes over slots of this group and earlier ones.
+#if CHOOSES_LATER
+        uint later = lane_bits(undecided);
+        if (later) waiting = move_paths(rays, waiting, rays, i, throughput, later);
+#elif PASSES_BEHIND
         if (any_lane(passing)) passed = pass_through(rays, passed, i, scene->surfaces, passing MEDIA_VIEW_ARGUMENT(scene));
 #endif
     }
+#if CHOOSES_LATER
+    sort_undecided(block, scene, rays, waiting, &ends);
+#endif
     block.header->traced = n;
     global uint *count = block.header->count;
     count[QUEUE_RAYS] = passed;
     count[QUEUE_ESCAPED] = escaped;
     count[QUEUE_EMITTED] = emitted;
-    count[QUEUE_DELTA] = delta;
-    count[QUEUE_GLOSSY] = glossy;
-    count[QUEUE_DIFFUSE] = diffuse;
+    count[QUEUE_DELTA] = ends.delta;
+    count[QUEUE_GLOSSY] = ends.glossy;
+    count[QUEUE_DIFFUSE] = ends.diffuse;
     return n;
 }
 
