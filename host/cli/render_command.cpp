@@ -181,8 +181,8 @@ int run(const RenderOptions& options) {
     report.stats.setup_parts["device"] = device_seconds;
     write_outputs(options, scene, image, report);
 
-    if (const std::string warning = non_finite_warning(report.stats); !warning.empty()) {
-        std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : {non_finite_warning(report.stats), holes_warning(report)}) {
+        if (!warning.empty()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     }
     if (!options.quiet) {
         if (options.verbose) std::printf("%s", report_table(report).c_str());

@@ -80,6 +80,14 @@ std::string report_json(const RenderReport& report) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string holes_warning(const RenderReport& report) {
+    // Every tile has its first sample before any has its second.
+    const std::uint64_t pixels = static_cast<std::uint64_t>(report.width) * static_cast<std::uint64_t>(report.height);
+    const bool none_asked_for = report.stats.samples == 0;  // paths of no edges
+    if (none_asked_for || report.stats.samples >= pixels) return {};
+    return fmt::format("{} of {} pixels have no sample yet and are black: the picture was ended too soon", pixels - report.stats.samples, pixels);
+}
+
 std::string non_finite_warning(const RenderStats& stats) {
     if (stats.nan_samples == 0) return {};
     std::string text = fmt::format("{} samples were NaN or infinite and are left out of the picture", stats.nan_samples);

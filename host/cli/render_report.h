@@ -30,4 +30,7 @@ std::string replay_text(const Replay& replay);
 // Names the first of the samples left out; empty when there are none.
 std::string non_finite_warning(const RenderStats& stats);
 
+// Of a picture that was ended before each pixel had a sample; empty otherwise.
+std::string holes_warning(const RenderReport& report);
+
 }  // namespace wavelobe

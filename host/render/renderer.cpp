@@ -63,16 +63,21 @@ float layer_film_step(const RenderSettings& settings) {
     return open_end ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
 }
 
+// About how many samples a picture will have, where error or time end it.
+std::uint64_t expected_samples(const RenderSettings& settings, const Film& film) {
+    constexpr double of_open_pixels = 1024.0, a_second = 1e6;
+    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
+    const double samples = static_cast<double>(film.width) * film.height * (open_end ? of_open_pixels : settings.samples_per_pixel);
+    return static_cast<std::uint64_t>(settings.time_limit > 0.0 ? std::min(samples, settings.time_limit * a_second) : samples);
+}
+
 // The scene as the device has it, with what the settings ask of its kernels.
 DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
     DeviceScene data = flatten_scene(scene, settings.estimator);
     data.parameters.seed = settings.seed;
     data.parameters.layer_film_step = layer_film_step(settings);
     data.features.independent_samples = settings.sampler == Sampler::independent;
-    // Ended by error or time, a picture takes what it takes.
-    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
-    const std::uint64_t pixels = static_cast<std::uint64_t>(scene.film.width) * static_cast<std::uint64_t>(scene.film.height);
-    set_photon_count(data, pixels * (open_end ? 1024U : static_cast<std::uint64_t>(settings.samples_per_pixel)));
+    set_photon_count(data, expected_samples(settings, scene.film));
     data.features.caustics = data.features.caustics && settings.guide_caustics;
     data.features.smooth_terminator = settings.smooth_terminator && data.features.smooth_normals;
     data.features.error_estimate = settings.target_error > 0.0;
@@ -205,8 +210,9 @@ bool Renderer::State::render(const ProgressCallback& progress) {
             return true;
         }
         const double left = settings.time_limit > 0.0 ? settings.time_limit - seconds_since(start) : no_limit;
-        if (left <= 0.0) break;
-        driver->step(left);
+        // However little time there is, there is a picture.
+        if (left <= 0.0 && scheduler.samples_done() > 0) break;
+        driver->step(std::max(left, 0.0));
         const double seconds = seconds_since(start);
         const double share = std::max(scheduler.share_done(), settings.time_limit > 0.0 ? seconds / settings.time_limit : 0.0);
         if (progress && !progress({scheduler.samples_done(), std::min(share, 1.0), seconds})) break;

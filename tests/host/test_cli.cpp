@@ -310,6 +310,11 @@ TEST(Format, ClosingLineAndWarning) {
     report.stats.samples = 41200000;
     EXPECT_EQ(closing_line(report), "render 3.142 s, setup 0.210 s, 41.2 M samples, 13.1 M samples/s");
     EXPECT_EQ(non_finite_warning(report.stats), "");
+    report.width = 10000;
+    report.height = 4000;
+    EXPECT_EQ(holes_warning(report), "");
+    report.height = 5000;
+    EXPECT_EQ(holes_warning(report), "8800000 of 50000000 pixels have no sample yet and are black: the picture was ended too soon");
     report.stats.nan_samples = 3;
     report.stats.nan_examples = {{{4, 5, 6}, "sort_paths"}, {{7, 8, 9}, "scatter_delta"}};
     EXPECT_EQ(non_finite_warning(report.stats),

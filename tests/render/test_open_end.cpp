@@ -68,5 +68,12 @@ TEST(TimeLimit, EndsAPictureWithoutHoles) {
     }
 }
 
+TEST(TimeLimit, LeavesTimeForSomeSamples) {
+    RenderSettings settings;
+    settings.samples_per_pixel = 1 << 20;
+    settings.time_limit = 1e-6;
+    EXPECT_GT(render(small_box(), settings).stats.samples, 0U);
+}
+
 }  // namespace
 }  // namespace wavelobe::test
