@@ -17,7 +17,8 @@ public:
 private:
     CausticGrid& grid() const { return buffers_.view<CausticGrid>("caustic_grid")[0]; }
     void run(Kernel& kernel, std::size_t items) const;
-    void record(const std::vector<std::size_t>& cells);
+    void record(const std::vector<std::uint32_t>& sides);
+    void share_samples(const std::vector<std::uint32_t>& sides);
 
     const Device& device_;
     DeviceBuffers& buffers_;
