@@ -31,7 +31,7 @@ void summarize(FewTriangleSet& few) {
     s.analytic_count = static_cast<std::uint32_t>(few.analytics.size());
 }
 
-// Corners and planes, a row of all triangles after the other.
+// Corners and normals, a row of all triangles after the other.
 void add_corners(FewTriangleSet& few) {
     few.corners.assign(std::size_t{FEW_CORNER_ROWS} * FEW_TRIANGLES_MAX, 0.0F);
     const auto vertex = [&](std::uint32_t i) {
@@ -42,9 +42,9 @@ void add_corners(FewTriangleSet& few) {
         const std::uint32_t* corner = few.triangles[i].corner;
         const glm::dvec3 a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]), normal = glm::cross(b - a, c - a);
         std::size_t row = 0;
-        const auto add = [&](double value) { few.corners[row++ * FEW_TRIANGLES_MAX + i] = static_cast<float>(value); };
-        for (const glm::dvec3& v : {a, b, c, normal}) add(v.x), add(v.y), add(v.z);
-        add(glm::dot(normal, a));
+        for (const glm::dvec3& v : {a, b, c, normal}) {
+            for (glm::length_t k = 0; k < 3; ++k) few.corners[row++ * FEW_TRIANGLES_MAX + i] = static_cast<float>(v[k]);
+        }
     }
 }
 

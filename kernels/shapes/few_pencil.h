@@ -3,11 +3,13 @@
 //
 // A triangle is left out if its corners lie on the outer side of one of the planes around the pencil, by PENCIL_MARGIN at least,
 // and the volume V of the tetrahedron it makes with the origin is no less than PENCIL_VOLUME, both in units of the distance q of its
-// farthest corner and of its cube. (And no less than what makes depths sure.) Why none is missed: with the areas w that the test takes from the turned corners v,
-// sum(w v) is the depth times the ray's direction d, and the depth is 6 V or -6 V. If the depth is negative it is beyond what
-// is unsure, and no hit. Otherwise take the dot product with the plane's normal n, no longer than 2: n d >= -2^-20 for rays within the
-// plane as it is rounded, so sum(w (n v)) >= -2^-20 q^3, where n v <= -2^-7 q. A hit has no w below minus the rounding of two products,
-// 2^-22 q^2; so all positive w are 2^-12 q^2 together at the most, and the depth no more than 2^-12 q^3.
+// farthest corner and of its cube. (And no less than what makes depths sure.)
+//
+// Why none is missed: with the areas w that the test takes from the turned corners v, sum(w v) is the depth times the ray's direction
+// d, and the depth is 6 V or -6 V. If the depth is negative it is beyond what is unsure, and no hit. Otherwise take the dot product
+// with the plane's normal n, no longer than 2: n d >= -2^-20 for rays within the plane as it is rounded, so
+// sum(w (n v)) >= -2^-20 q^3, where n v <= -2^-7 q. A hit has no w below minus the rounding of two products, 2^-22 q^2; so all
+// positive w are 2^-12 q^2 together at the most, and the depth no more than 2^-12 q^3.
 #ifndef WAVELOBE_SHAPES_FEW_PENCIL_H
 #define WAVELOBE_SHAPES_FEW_PENCIL_H
 
@@ -55,8 +57,10 @@ INLINE uint few_in_pencil(global const float *corners, uint first, const Pencil 
     Float farthest2 = ZERO;
     // How far the corner nearest to each plane is beyond it.
     Float left = (Float)INFINITY, right = left, below = left, above = left, behind = left;
+    Vec3 way = vec3_all(ZERO); // to a corner
     for (uint k = 0u; k < 3u; k++) {
-        Vec3 v = to_local(p->frame, sub(vec3(FEW_ROW(3u * k), FEW_ROW(3u * k + 1u), FEW_ROW(3u * k + 2u)), p->origin));
+        way = sub(vec3(FEW_ROW(3u * k), FEW_ROW(3u * k + 1u), FEW_ROW(3u * k + 2u)), p->origin);
+        Vec3 v = to_local(p->frame, way);
         farthest2 = GREATER(farthest2, length_squared(v));
         left = LESSER(left, madd(p->low_x, v.z, -v.x));
         right = LESSER(right, madd(-p->high_x, v.z, v.x));
@@ -64,7 +68,7 @@ INLINE uint few_in_pencil(global const float *corners, uint first, const Pencil 
         above = LESSER(above, madd(-p->high_y, v.z, v.y));
         behind = LESSER(behind, -v.z);
     }
-    Float volume = fabs(dot3(vec3(FEW_ROW(9u), FEW_ROW(10u), FEW_ROW(11u)), p->origin) - FEW_ROW(12u));
+    Float volume = fabs(dot3(vec3(FEW_ROW(9u), FEW_ROW(10u), FEW_ROW(11u)), way));
 #undef FEW_ROW
     Float farthest = sqrt(farthest2), beyond = GREATER(GREATER(GREATER(left, right), GREATER(below, above)), behind);
     // Twice the margin: the normals of the planes are not of unit length, but of no more than two.

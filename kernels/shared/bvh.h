@@ -45,9 +45,9 @@ WAVELOBE_CHECK_SIZE(FewTriangle, 20);
 
 #define FEW_TRIANGLES_MAX 96u // a multiple of LANES
 #define FEW_VERTICES_MAX 128u
-// Their corners once more, FEW_TRIANGLES_MAX values a row, to see LANES triangles at once: x, y and z of each corner, the normal,
-// as long as twice the area, and its dot product with a corner.
-#define FEW_CORNER_ROWS 13u
+// Their corners once more, FEW_TRIANGLES_MAX values a row, to see LANES triangles at once: x, y and z of each corner and of the normal,
+// as long as twice the area.
+#define FEW_CORNER_ROWS 12u
 
 // Their spheres, disks and cylinders, each within its box.
 struct FewAnalytic {

@@ -10,9 +10,9 @@
 INLINE UInt started_ids(uint next, uint path_count) {
     UInt started = LANE_INDEX + (UInt)next;
 #if LANES > 1
-    uint samples = path_count / TILE_PIXELS, together = clamp(samples & (0u - samples), 1u, (uint)LANES);
-    UInt turn = started / together;
-    return (turn / TILE_PIXELS * together + (started & (together - 1u))) * TILE_PIXELS + (turn & (TILE_PIXELS - 1u));
+    uint samples = path_count / TILE_PIXELS, digits = samples == 0u ? 0u : min(lowest_bit(samples), lowest_bit(LANES + 0u));
+    UInt turn = started >> digits, within = started & ((1u << digits) - 1u);
+    return (((turn / TILE_PIXELS) << digits) + within) * TILE_PIXELS + turn % TILE_PIXELS;
 #else
     return started;
 #endif
