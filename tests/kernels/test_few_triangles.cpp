@@ -160,14 +160,14 @@ TEST(FewTriangles, SameBitsAtEveryWidth) {
 }
 
 // Groups of 16 rays from one point, within `spread` of each other; every other point lies in the plane of a triangle.
-std::vector<TestRay> pencils(const Triangles& triangles, std::size_t count, float spread, unsigned seed) {
+std::vector<TestRay> pencils(const Triangles& triangles, std::size_t count, float spread, unsigned seed, float scale = 1.0F, const glm::vec3& offset = {}) {
     Generator random(seed);
     std::vector<TestRay> rays;
     for (std::size_t i = 0; i < count; ++i) {
         const TriangleVertices& t = triangles[i % triangles.size()];
         const glm::vec3 weights = uniform_in_cube(random, 4.0F);
         const glm::vec3 in_plane = t[0] + weights.x * (t[1] - t[0]) + weights.y * (t[2] - t[0]);
-        const glm::vec3 origin = i % 2 == 0 ? in_plane : uniform_in_cube(random, 3.0F);
+        const glm::vec3 origin = i % 2 == 0 ? in_plane : uniform_in_cube(random, 3.0F) * scale + offset;
         const glm::vec3 axis = i % 3 == 0 ? uniform_direction(random) : glm::normalize(t[i % 3] - origin);
         for (int k = 0; k < 16; ++k) rays.push_back({origin, glm::normalize(axis + spread * uniform_direction(random))});
     }
@@ -175,23 +175,31 @@ std::vector<TestRay> pencils(const Triangles& triangles, std::size_t count, floa
 }
 
 // Triangles of every shape, down to needles.
-Triangles soup_with_needles(unsigned seed) {
-    Triangles triangles = triangle_soup(42, 0.7F, 1.0F, {}, seed);
+Triangles soup_with_needles(unsigned seed, float scale, const glm::vec3& offset) {
+    Triangles triangles = triangle_soup(42, 0.7F, scale, offset, seed);
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
-        triangles[i][2] = glm::mix(triangles[i][0], triangles[i][1], 0.3F) + std::ldexp(1.0F, -static_cast<int>(i)) * triangles[i][2];
+        triangles[i][2] = glm::mix(glm::mix(triangles[i][0], triangles[i][1], 0.3F), triangles[i][2], std::ldexp(1.0F, -static_cast<int>(i) / 2));
     }
     return triangles;
 }
 
-TEST(FewTriangles, PencilsMeetWhatSingleRaysMeet) {
+class FewPencils : public testing::TestWithParam<Soup> {};
+
+TEST_P(FewPencils, MeetWhatSingleRaysMeet) {
+    const Soup& soup = GetParam();
     for (const float spread : {0.0F, 1e-3F, 0.03F, 0.3F, 0.9F}) {
-        const SmallScene scene(soup_with_needles(7));
-        const std::vector<TestRay> rays = pencils(scene.triangles, 4000, spread, 8);
+        const SmallScene scene(soup_with_needles(7, soup.scale, soup.offset));
+        const std::vector<TestRay> rays = pencils(scene.triangles, 4000, spread, 8, soup.scale, soup.offset);
         const std::vector<TestHit> hits = FewProbe(1).trace(scene.few, rays);
         EXPECT_EQ(probe().trace(scene.few, rays), hits) << spread;
         EXPECT_EQ(FewProbe(8).trace(scene.few, rays), hits) << spread;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(All, FewPencils,
+                         testing::Values(Soup{"unit", 0.7F, 1.0F, {}}, Soup{"tiny_scale", 0.7F, 1e-6F, {}}, Soup{"huge_scale", 0.7F, 1e6F, {}},
+                                         Soup{"far_away", 0.7F, 1.0F, {1000.0F, -3000.0F, 500.0F}}),
+                         [](const auto& soup) { return soup.param.name; });
 
 TEST(FewTriangles, PencilsAreNotTestedAgainstWhatLiesBesideThem) {
     const SmallScene scene(triangle_soup(42, 0.3F, 1.0F, {}, 9));
