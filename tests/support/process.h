@@ -29,6 +29,8 @@ public:
         std::vector<char*> pointers{const_cast<char*>(executable.c_str())};
         for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
         pointers.push_back(nullptr);
+        // What an earlier process said is not this one's.
+        for (const char* name : {"stdout", "stderr"}) std::filesystem::remove(folder_ / name);
         id_ = fork();
         if (id_ != 0) return;
         // Between fork and exec only what is safe in a copy of a process with threads.
