@@ -52,16 +52,18 @@ def blocks(pictures, size):
     return pictures.reshape(n, height // size, size, width // size, size, channels).mean(axis=(2, 4))
 
 
-def welch(ours, theirs):
-    """How many means differ, of which channel and place the least likely is, its p-value, and the threshold."""
-    rounds = len(ours)
+def deviations(ours, theirs):
+    """Difference of the means in standard errors. Where nothing varies both agree to a few roundings, or do not."""
     reference = theirs.mean(axis=0)
     difference = ours.mean(axis=0) - reference
-    # Where nothing varies both agree to a few roundings, or do not.
-    rounding = 1e-5 * np.abs(reference)
-    variance = (ours.var(axis=0, ddof=1) + theirs.var(axis=0, ddof=1)) / rounds
-    t = np.maximum(np.abs(difference) - rounding, 0.0) / np.sqrt(np.maximum(variance, 1e-300))
-    p = student_p_values(t, 2 * rounds - 2)
+    variance = (ours.var(axis=0, ddof=1) + theirs.var(axis=0, ddof=1)) / len(ours)
+    beyond_rounding = np.maximum(np.abs(difference) - 1e-5 * np.abs(reference), 0.0)
+    return np.sign(difference) * beyond_rounding / np.sqrt(np.maximum(variance, 1e-300))
+
+
+def welch(ours, theirs):
+    """How many means differ, of which channel and place the least likely is, its p-value, and the threshold."""
+    p = student_p_values(np.abs(deviations(ours, theirs)), 2 * len(ours) - 2)
     threshold = -np.expm1(np.log1p(-SIGNIFICANCE) / p.size)
     worst = np.unravel_index(np.argmin(p), p.shape)
     return int((p < threshold).sum()), f"row {worst[0]}, column {worst[1]}, channel {worst[2]}: p {p[worst]:.2g}, threshold {threshold:.2g}"
@@ -86,7 +88,28 @@ def relative_means(ours, theirs):
     return ours_mean.mean(axis=0) / theirs_mean.mean(axis=0) - 1.0, errors
 
 
-def compare(mi, source):
+def draw(panels, path):
+    """A row a scene: ours, Mitsuba's, and by how many standard errors they differ, from blue (-4) over white to red (4)."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(len(panels), 3, figsize=(6.6, 2.3 * len(panels)), squeeze=False, layout="constrained")
+    for row, (name, ours, theirs) in zip(axes, panels):
+        for axis, title, pictures in ((row[0], name, ours), (row[1], "Mitsuba 3", theirs)):
+            axis.imshow(np.clip(np.mean(pictures, axis=0), 0, 1) ** (1 / 2.2))
+            axis.set_title(title, fontsize=8)
+        row[2].imshow(deviations(ours.mean(axis=-1), theirs.mean(axis=-1)), cmap="bwr", vmin=-4, vmax=4)
+        row[2].set_title("difference, standard errors", fontsize=8)
+        for axis in row:
+            axis.set_axis_off()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=100)
+    pyplot.close(figure)
+
+
+def compare(mi, source, panels):
     start = time.time()
     size, spp, rounds, bound = OURS if source.parent == ROOT / "scenes" else FOREIGN
     scene = comparable_scene(source, size, spp)
@@ -102,6 +125,7 @@ def compare(mi, source):
         ours.append(load(mi, picture))
         theirs.append(np.array(mi.render(theirs_scene, spp=spp, seed=seed), dtype=np.float64)[..., :3])
     ours, theirs, rounds = np.array(ours), np.array(theirs), len(ours)
+    panels.append((scene_name(source), ours, theirs))
     pixels, worst_pixel = welch(ours, theirs)
     squares, worst_square = welch(blocks(ours, BLOCK), blocks(theirs, BLOCK))
     by_channel, errors = relative_means(ours, theirs)
@@ -134,7 +158,7 @@ def main():
 
     mi.set_variant("llvm_ad_rgb")
     mi.set_log_level(mi.LogLevel.Error)
-    rows = []
+    rows, panels = [], []
     WORK.mkdir(parents=True, exist_ok=True)
     sources = [Path(s).resolve() for s in sys.argv[1:]] or sorted((ROOT / "scenes").glob("*.xml")) + [
         s for s in FOREIGN_SCENES if s.exists()]
@@ -143,12 +167,17 @@ def main():
         if time.time() > limit:
             print(f"{source.name}: not compared, no time left", flush=True)
             continue
-        found, reason = compare(mi, source)
+        found, reason = compare(mi, source, panels)
         if reason:
             print(f"{source.name}: not for Mitsuba: {reason}", flush=True)
         for row in found:
             print(f"{row['claim']}: {row['measured']:.3g}, bound {row['bound']:g} ({row['worst']})", flush=True)
         rows += found
+    folder = os.environ.get("WAVELOBE_VERIFY_PICTURES")
+    if folder and panels:
+        draw(panels, Path(folder) / "accuracy_peers.png")
+        append_rows([{"section": "Light transport", "picture": "Ours, Mitsuba's, and their difference in standard errors, -4 (blue) to 4 (red)",
+                      "file": "accuracy_peers.png"}])
     append_rows(rows)
     return 0 if all(row["holds"] for row in rows) else 1
 

@@ -71,6 +71,8 @@ def write(rows, path):
         for t in (r for r in mine if "table" in r):
             lines += [f"**{t['table']}**", ""]
             lines += table(t["columns"], [[number(c) for c in row] for row in t["rows"]]) + [""]
+        for p in (r for r in mine if "picture" in r):
+            lines += [f"![{p['picture']}](images/{p['file']})", "", f"*{p['picture']}*", ""]
     path.write_text("\n".join(lines).rstrip() + "\n")
 
 
