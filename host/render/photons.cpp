@@ -20,15 +20,13 @@ void PhotonPass::run(Kernel& kernel, std::size_t items) const {
     device_.finish();
 }
 
-// Shoots the same photons again, now into the maps of cubes with these sides.
-void PhotonPass::record(const std::vector<std::uint32_t>& sides) {
-    grid().recording = 1;
+// All batches, the same photons each time.
+void PhotonPass::shoot_all() {
     grid().next_batch = 0;
     run(shoot_, buffers_.view<BlockHeader>("headers").size());
-    run(build_, sides.size());
 }
 
-// Enters the share of samples that each map takes; where that is none, cells lose their map.
+// Enters the share of samples that each map takes, by the sides of its cube; where that is none, cells lose their map.
 void PhotonPass::share_samples(const std::vector<std::uint32_t>& sides) {
     const auto sums = buffers_.view<std::uint64_t>("caustic_sums");
     const auto squares = buffers_.view<std::uint64_t>("caustic_squares");
@@ -44,12 +42,13 @@ void PhotonPass::share_samples(const std::vector<std::uint32_t>& sides) {
 }
 
 void PhotonPass::shoot() {
-    grid().next_batch = 0;
-    run(shoot_, buffers_.view<BlockHeader>("headers").size());
+    shoot_all();
     const std::vector<std::uint32_t> sides =
         choose_caustic_maps(grid(), buffers_.view<std::uint32_t>("caustic_counts"), buffers_.view<std::uint32_t>("caustic_cells"));
     if (!sides.empty()) {
-        record(sides);
+        grid().recording = 1;
+        shoot_all();
+        run(build_, sides.size());
         share_samples(sides);
     }
     for (const char* name : {"caustic_targets", "caustic_counts", "caustic_sums", "caustic_squares"}) buffers_.remove(name);

@@ -17,7 +17,7 @@ public:
 private:
     CausticGrid& grid() const { return buffers_.view<CausticGrid>("caustic_grid")[0]; }
     void run(Kernel& kernel, std::size_t items) const;
-    void record(const std::vector<std::uint32_t>& sides);
+    void shoot_all();
     void share_samples(const std::vector<std::uint32_t>& sides);
 
     const Device& device_;

@@ -57,17 +57,18 @@ void refuse_large_film(const Device& device, const DeviceScene& scene) {
                            "render a smaller picture, or a window of it with --crop"});
 }
 
+// Whether error or time end a picture, and not its number of samples.
+bool has_open_end(const RenderSettings& settings) { return settings.target_error > 0.0 || settings.time_limit > 0.0; }
+
 // As Mitsuba scales its ray differentials; where the number of samples is open, a whole pixel.
 float layer_film_step(const RenderSettings& settings) {
-    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
-    return open_end ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
+    return has_open_end(settings) ? 1.0F : 1.0F / std::sqrt(static_cast<float>(std::max(settings.samples_per_pixel, 1)));
 }
 
-// About how many samples a picture will have, where error or time end it.
+// About how many samples a picture will have.
 std::uint64_t expected_samples(const RenderSettings& settings, const Film& film) {
     constexpr double of_open_pixels = 1024.0, a_second = 1e6;
-    const bool open_end = settings.target_error > 0.0 || settings.time_limit > 0.0;
-    const double samples = static_cast<double>(film.width) * film.height * (open_end ? of_open_pixels : settings.samples_per_pixel);
+    const double samples = static_cast<double>(film.width) * film.height * (has_open_end(settings) ? of_open_pixels : settings.samples_per_pixel);
     return static_cast<std::uint64_t>(settings.time_limit > 0.0 ? std::min(samples, settings.time_limit * a_second) : samples);
 }
 

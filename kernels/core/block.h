@@ -105,9 +105,6 @@ INLINE void append_vec3(Queue q, uint field, uint at, Vec3 v, uint bits) {
     append_field(q, field + 2u, at, v.z, bits);
 }
 
-// Lanes of the group that starts at slot i which hold an item of a queue with n of them.
-INLINE Int lanes_below(uint i, uint n) { return (LANE_INDEX + (UInt)i) < (UInt)n; }
-
 // ---- radiance of the block's paths ---------------------------------------------------------------------
 
 INLINE global float *radiance_channel(Block b, uint channel) {

@@ -142,6 +142,9 @@ INLINE int any_lane(Int m) {
 #endif
 }
 
+// Lanes of the group that starts at item i which hold one of n items.
+INLINE Int lanes_below(uint i, uint n) { return (LANE_INDEX + (UInt)i) < (UInt)n; }
+
 // The least value of all lanes.
 INLINE float least_lane(Float v) {
 #if LANES == 1

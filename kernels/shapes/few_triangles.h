@@ -185,7 +185,7 @@ INLINE void meet_in_pencil(FewTriangles g, const Pencil *pencil, const LaneRay *
     Frame f = frame_of_normal(ray->direction);
     uint n = g.summary->triangle_count;
     for (uint first = 0u; first < n; first += LANES) {
-        uint bits = few_in_pencil(g.corners, first, pencil) & lane_bits(LANE_INDEX + (UInt)first < (UInt)n);
+        uint bits = few_in_pencil(g.corners, first, pencil) & lane_bits(lanes_below(first, n));
         while (bits) {
             POP_LOWEST_BIT(bits, k);
             for (uint c = 0u; c < 3u; c++) turn_vertex(g, g.triangles[first + k].corner[c], ray->origin, f, turned);

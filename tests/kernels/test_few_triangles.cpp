@@ -53,7 +53,7 @@ kernel void count_left(global const struct FewSummary *summary, global const flo
     if (!find_pencil(ray.origin, direction, ray.unsure, &pencil)) return;
     left[get_global_id(0)] = 0u;
     for (uint first = 0u; first < summary->triangle_count; first += LANES) {
-        uint present = lane_bits(LANE_INDEX + (UInt)first < (UInt)summary->triangle_count);
+        uint present = lane_bits(lanes_below(first, summary->triangle_count));
         left[get_global_id(0)] += popcount(few_in_pencil(corners, first, &pencil) & present);
     }
 }

@@ -63,7 +63,7 @@ void trace_group(Geometry geometry, global const float *rays, uint first, uint c
         group.dx.value[k] = p[3], group.dy.value[k] = p[4], group.dz.value[k] = p[5];
         group.limit.value[k] = p[6], group.from[k] = as_uint(p[7]);
     }
-    uint live = lane_bits(LANE_INDEX + (UInt)first < (UInt)count);
+    uint live = lane_bits(lanes_below(first, count));
     GroupHit hit;
     trace_closest_group(geometry, &group, live, &hit);
     uint any = trace_any_group(geometry, &group, live);
