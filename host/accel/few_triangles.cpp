@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "accel/few_facets.h"
+
 namespace wavelobe {
 namespace {
 
@@ -29,23 +31,6 @@ void summarize(FewTriangleSet& few) {
     s.triangle_count = static_cast<std::uint32_t>(few.triangles.size());
     s.vertex_count = static_cast<std::uint32_t>(few.vertices.size() / 3);
     s.analytic_count = static_cast<std::uint32_t>(few.analytics.size());
-}
-
-// Corners and normals, a row of all triangles after the other.
-void add_corners(FewTriangleSet& few) {
-    few.corners.assign(std::size_t{FEW_CORNER_ROWS} * FEW_TRIANGLES_MAX, 0.0F);
-    const auto vertex = [&](std::uint32_t i) {
-        const float* v = &few.vertices[std::size_t{3} * i];
-        return glm::dvec3(v[0], v[1], v[2]);
-    };
-    for (std::size_t i = 0; i < few.triangles.size(); ++i) {
-        const std::uint32_t* corner = few.triangles[i].corner;
-        const glm::dvec3 a = vertex(corner[0]), b = vertex(corner[1]), c = vertex(corner[2]), normal = glm::cross(b - a, c - a);
-        std::size_t row = 0;
-        for (const glm::dvec3& v : {a, b, c, normal}) {
-            for (glm::length_t k = 0; k < 3; ++k) few.corners[row++ * FEW_TRIANGLES_MAX + i] = static_cast<float>(v[k]);
-        }
-    }
 }
 
 void add_analytics(FewTriangleSet& few, const Bvh& bvh, std::span<const Bounds> bounds) {
@@ -89,7 +74,7 @@ FewTriangleSet find_few_triangles(const Bvh& bvh, std::span<const Bounds> analyt
     if (few.triangles.empty()) return {};
     add_analytics(few, bvh, analytic_bounds);
     summarize(few);
-    add_corners(few);
+    add_facets(few);
     return few;
 }
 

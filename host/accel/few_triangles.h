@@ -11,7 +11,9 @@ namespace wavelobe {
 struct FewTriangleSet {
     std::vector<float> vertices;  // 3 each, distinct, in the unit of the summary
     std::vector<FewTriangle> triangles;
-    std::vector<float> corners;   // FEW_CORNER_ROWS rows of all triangles, in that unit too
+    std::vector<FewFacet> facets;
+    std::vector<float> corners;  // FEW_CORNER_ROWS rows of all facets, in that unit too
+    std::vector<std::uint32_t> numbers;  // facet of each triangle by its number, or FACET_NONE
     std::vector<FewAnalytic> analytics;
     FewSummary summary{};
 };

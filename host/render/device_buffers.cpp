@@ -75,7 +75,11 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
     if (!scene.features.few_triangles) add("bvh_nodes", bvh.nodes);
     add("few_vertices", few.vertices);
     add("few_triangles", few.triangles);
-    add("few_corners", few.corners);
+    if (scene.features.facets()) {
+        add("few_facets", few.facets);
+        add("few_corners", few.corners);
+        add("few_numbers", few.numbers);
+    }
     add("few_analytics", few.analytics);
     add("triangle_blocks", bvh.blocks);
     if (!scene.features.few_triangles) add("analytic_order", bvh.analytic_order);

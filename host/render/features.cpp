@@ -132,7 +132,7 @@ std::size_t block_words(const FeatureSet& features, int block_slots) {
     for (const std::uint32_t c : {LOBE_CLASS_DELTA, LOBE_CLASS_GLOSSY, LOBE_CLASS_DIFFUSE}) {
         if (features.has_lobe_class(c)) ++queues;
     }
-    return stride * (fields + queues * traced + SHADOW_FIELDS + (features.media ? 1 : 0)) +
+    return stride * (fields + queues * traced + SHADOW_FIELDS + (features.media ? 1 : 0) + (features.facets() ? 1 : 0)) +
            std::size_t{3} * TILE_PIXELS * BLOCK_SAMPLES;
 }
 

@@ -87,6 +87,7 @@ struct FeatureSet {
     bool has_lobe_class(std::uint32_t lobe_class) const;
     bool has_surface_lights() const;
     bool light_tree() const { return placed_lights > 0; }
+    bool facets() const { return few_triangles && !masks; }  // of which rays are tested against pairs
     bool glossy_receivers() const;  // lobes have a say in which light is chosen
     bool has_environment() const;
 

@@ -16,6 +16,7 @@ Light light_of(LightIndex kind, const TexturedRgb& radiance) {
     Light light{};
     light.kind = kind;
     light.radiance = radiance;
+    light.triangle = WAVELOBE_NONE;
     return light;
 }
 
@@ -64,16 +65,17 @@ void LightFlattener::add_placed_light(const Light& light, const LightBounds& bou
 
 void LightFlattener::add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh) {
     const MeshRadiance radiance{materials_.rgb(emitter.radiance), mean_luminance(emitter.radiance), uvs_of(emitter, mesh)};
+    auto number = static_cast<std::uint32_t>(out_.triangles.size() - mesh.triangles.size());
     if (mesh.parallelogram) {
         const glm::dvec3 p(mesh.positions[0]);
         const glm::dvec3 e1 = glm::dvec3(mesh.positions[1]) - p;
         const glm::dvec3 e2 = glm::dvec3(mesh.positions[3]) - p;
         // Perpendicular to the rounding of the corners.
         const bool rectangle = std::abs(glm::dot(e1, e2)) <= 1e-6 * glm::length(e1) * glm::length(e2);
-        add_planar(mesh, rectangle ? LIGHT_RECTANGLE : LIGHT_PARALLELOGRAM, radiance, {0, 1, 3});
+        add_planar(mesh, rectangle ? LIGHT_RECTANGLE : LIGHT_PARALLELOGRAM, radiance, {0, 1, 3}, number);
         return;
     }
-    for (const glm::uvec3& t : mesh.triangles) add_planar(mesh, LIGHT_TRIANGLE, radiance, t);
+    for (const glm::uvec3& t : mesh.triangles) add_planar(mesh, LIGHT_TRIANGLE, radiance, t, number++);
 }
 
 const std::vector<glm::vec2>& LightFlattener::uvs_of(const AreaEmitter& emitter, const TriangleMesh& mesh) {
@@ -81,13 +83,15 @@ const std::vector<glm::vec2>& LightFlattener::uvs_of(const AreaEmitter& emitter,
     return texture && texture->second_uvs && !mesh.second_uvs.empty() ? mesh.second_uvs : mesh.uvs;
 }
 
-void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t) {
+void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t,
+                                 std::uint32_t number) {
     Light light = light_of(kind, radiance.value);
     const glm::vec3 p = mesh.positions[t.x];
     const glm::vec3 e1 = mesh.positions[t.y] - p;
     const glm::vec3 e2 = mesh.positions[t.z] - p;
     const glm::dvec3 cross = glm::cross(glm::dvec3(e1), glm::dvec3(e2));
     const double area = glm::length(cross) * (kind == LIGHT_TRIANGLE ? 0.5 : 1.0);
+    light.triangle = number;
     light.position = packed(p);
     light.edge1 = packed(e1);
     light.edge2 = packed(e2);

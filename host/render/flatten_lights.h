@@ -22,7 +22,7 @@ class LightFlattener {
 public:
     LightFlattener(MaterialFlattener& materials, DeviceScene& out) : materials_(materials), out_(out) {}
 
-    // A light for each triangle, or one for a parallelogram.
+    // A light for each triangle, or one for a parallelogram; the triangles are the last of the device scene.
     void add_mesh(const AreaEmitter& emitter, const TriangleMesh& mesh);
     // What shines and is not sampled: a record of radiance behind the lights, for out.shapes[shape].
     void add_unsampled(const AreaEmitter& emitter, std::size_t shape);
@@ -49,7 +49,7 @@ private:
         const std::vector<glm::vec2>& uvs;
     };
     static const std::vector<glm::vec2>& uvs_of(const AreaEmitter& emitter, const TriangleMesh& mesh);
-    void add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t);
+    void add_planar(const TriangleMesh& mesh, LightIndex kind, const MeshRadiance& radiance, const glm::uvec3& t, std::uint32_t number);
     void add_light(const Light& light);
     void add_placed_light(const Light& light, const LightBounds& bounds);
     void set_range(Light& light, float range);

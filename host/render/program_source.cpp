@@ -88,6 +88,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("HAS_LIGHT_RANGE", f.light_range);
     out.define("HAS_SMOOTH_CONES", f.smooth_cones);
     out.define("HAS_FEW_TRIANGLES", f.few_triangles);
+    out.define("HAS_FACETS", f.facets());
     if (f.few_triangles) return;
     out.define_unsigned("BVH_STACK", f.bvh_stack);
     out.define_unsigned("WALKS", f.walks);

@@ -112,9 +112,9 @@ int slots_of(const RenderSettings& settings) {
 
 void note_nonfinite(RenderStats& stats, const TileRange& range, std::uint32_t path, std::uint32_t stage) {
     if (path == WAVELOBE_NONE || stats.nan_examples.size() >= named_nonfinite_samples) return;
-    const std::uint32_t pixel = path % TILE_PIXELS;
+    const std::uint32_t digits = PATH_DIGITS(range.samples), pixel = PATH_PIXEL(path, digits);
     const SampleName name{static_cast<int>(range.x + TILE_X(pixel)), static_cast<int>(range.y + TILE_Y(pixel)),
-                          range.first_sample + path / TILE_PIXELS};
+                          range.first_sample + PATH_SAMPLE(path, digits)};
     stats.nan_examples.push_back({name, stage_name(stage)});
 }
 

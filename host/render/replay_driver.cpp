@@ -27,10 +27,10 @@ Replay::Vertex vertex_of(const ReplayRecord& r) {
             .radiance = vector_of(r.radiance)};
 }
 
-// The id of a sample within its tile and range of samples.
-std::uint32_t path_id(std::uint32_t x, std::uint32_t y, std::uint32_t sample) {
+// The number of a pixel within its tile.
+std::uint32_t pixel_number(std::uint32_t x, std::uint32_t y) {
     for (std::uint32_t pixel = 0; pixel < TILE_PIXELS; ++pixel) {
-        if (TILE_X(pixel) == x && TILE_Y(pixel) == y) return sample * TILE_PIXELS + pixel;
+        if (TILE_X(pixel) == x && TILE_Y(pixel) == y) return pixel;
     }
     return WAVELOBE_NONE;
 }
@@ -50,14 +50,14 @@ public:
     }
 
     void step(double /*seconds*/) override {
-        const std::uint32_t range = sample_.sample % BLOCK_SAMPLES;
         const auto x = static_cast<std::uint32_t>(sample_.x);
         const auto y = static_cast<std::uint32_t>(sample_.y);
-        const std::uint32_t id = path_id(x % TILE_WIDTH, y % TILE_WIDTH, range);
+        // In a range of one sample the id of a path is the number of its pixel.
+        const std::uint32_t id = pixel_number(x % TILE_WIDTH, y % TILE_WIDTH);
         BlockHeader& block = context_.buffers.view<BlockHeader>("headers")[0];
         block.tile_x = x - x % TILE_WIDTH;
         block.tile_y = y - y % TILE_WIDTH;
-        block.first_sample = sample_.sample - range;
+        block.first_sample = sample_.sample;
         // The only one that is left to start.
         block.next_path = id;
         block.path_count = id + 1;

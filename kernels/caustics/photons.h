@@ -75,8 +75,8 @@ INLINE uint emit_photons(Block block, const SceneView *scene, PhotonRecord recor
         Float flux = luminance(light.radiance) * (PI_F * target.radius * target.radius) * target.inverse_chance / pdf;
         // What delta lights make of caustics no path can find.
         uint bits = lane_bits(!light.delta & (pdf > 0.0f) & (flux > 0.0f) & (flux < INFINITY) & (finiteness3(start) + finiteness3(direction) == 0.0f));
-        scatter(radiance_channel(block, 0u), id, flux, bits);
-        scatter(radiance_channel(block, 1u), id, luminance(light.radiance), bits);
+        scatter(radiance_channel(block, 0u), RADIANCE_AT(id), flux, bits);
+        scatter(radiance_channel(block, 1u), RADIANCE_AT(id), luminance(light.radiance), bits);
         count = append_first_rays(rays, count, scene->parameters, start, direction, (Float)INFINITY, id, bits);
     }
     *rays.count = count;
@@ -92,8 +92,8 @@ INLINE void record_photons(Block block, const SceneView *scene, PhotonRecord rec
         // Throughput is that of radiance, which refraction scales; flux it does not.
         LaneFloats flux, radiance;
         Float share = luminance(path.throughput) * path.eta * path.eta;
-        *(Float *)flux.value = gather(radiance_channel(block, 0u), path.id) * share;
-        *(Float *)radiance.value = gather(radiance_channel(block, 1u), path.id) * share;
+        *(Float *)flux.value = gather(radiance_channel(block, 0u), RADIANCE_AT(path.id)) * share;
+        *(Float *)radiance.value = gather(radiance_channel(block, 1u), RADIANCE_AT(path.id)) * share;
         Int within;
         LaneUints cell, bin;
         *(UInt *)cell.value = caustic_cell(record.grid, surface.position, &within);
@@ -150,7 +150,7 @@ kernel void shoot_photons(global struct BlockHeader *headers, global float *bloc
             next = emit_photons(block, &scene, record, next);
             while (block.header->count[QUEUE_RAYS] != 0u) follow_photons(block, &scene, record);
         }
-        for (uint id = 0u; id < PHOTONS_A_BATCH; id++) radiance_channel(block, 0u)[id] = radiance_channel(block, 1u)[id] = 0.0f;
+        for (uint i = 0u; i < RADIANCE_AT(PHOTONS_A_BATCH); i++) radiance_channel(block, 0u)[i] = 0.0f;
     }
 }
 

@@ -39,6 +39,7 @@
 #define SHADOW_FROM 8u        // primitive that the ray leaves
 #define SHADOW_ORIGIN 9u      // 3
 #define SHADOW_MEDIUM 12u     // that the ray starts in; in scenes with media
+#define SHADOW_TO (SHADOW_MEDIUM + HAS_MEDIA) // number of the triangle that it is aimed at; in scenes with facets
 
 #define QUEUE_STRIDE (BLOCK_SLOTS + QUEUE_PADDING)
 #define RAYS_OFFSET 0u
@@ -48,9 +49,8 @@
 #define GLOSSY_OFFSET (DELTA_OFFSET + HAS_DELTA_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
 #define DIFFUSE_OFFSET (GLOSSY_OFFSET + HAS_GLOSSY_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
 #define SHADOW_OFFSET (DIFFUSE_OFFSET + HAS_DIFFUSE_LOBES * TRACED_FIELDS * QUEUE_STRIDE)
-#define RADIANCE_OFFSET (SHADOW_OFFSET + (SHADOW_FIELDS + HAS_MEDIA) * QUEUE_STRIDE)
-#define RADIANCE_STRIDE (TILE_PIXELS * BLOCK_SAMPLES)
-#define BLOCK_WORDS (RADIANCE_OFFSET + 3u * RADIANCE_STRIDE)
+#define RADIANCE_OFFSET (SHADOW_OFFSET + (SHADOW_FIELDS + HAS_MEDIA + HAS_FACETS) * QUEUE_STRIDE)
+#define BLOCK_WORDS (RADIANCE_OFFSET + 3u * TILE_PIXELS * BLOCK_SAMPLES)
 
 typedef struct {
     global struct BlockHeader *header;
@@ -107,15 +107,21 @@ INLINE void append_vec3(Queue q, uint field, uint at, Vec3 v, uint bits) {
 
 // ---- radiance of the block's paths ---------------------------------------------------------------------
 
-INLINE global float *radiance_channel(Block b, uint channel) {
-    return b.memory + RADIANCE_OFFSET + (size_t)channel * RADIANCE_STRIDE;
-}
+// Channel c of path `id` is at RADIANCE_AT(id) of radiance_channel(b, c): what is added to a path is on one line of memory.
+#define RADIANCE_AT(id) ((id) * 3u)
 
+INLINE global float *radiance_channel(Block b, uint channel) { return b.memory + RADIANCE_OFFSET + channel; }
+
+// Lane by lane: gathers and scatters cost several times as much.
 INLINE void add_radiance(Block b, UInt id, Rgb radiance, uint bits) {
-    const Float channels[3] = {radiance.x, radiance.y, radiance.z};
-    for (uint c = 0u; c < 3u; c++) {
-        global float *channel = radiance_channel(b, c);
-        scatter(channel, id, gather(channel, id) + channels[c], bits);
+    LaneUints ids = lane_uints(id);
+    LaneFloats red = lane_floats(radiance.x), green = lane_floats(radiance.y), blue = lane_floats(radiance.z);
+    while (bits) {
+        POP_LOWEST_BIT(bits, k);
+        global float *of_path = radiance_channel(b, 0u) + RADIANCE_AT(ids.value[k]);
+        of_path[0] += red.value[k];
+        of_path[1] += green.value[k];
+        of_path[2] += blue.value[k];
     }
 }
 
@@ -129,8 +135,8 @@ INLINE Int mark_broken(Block b, uint stage, UInt id, Int live, Float finiteness)
     uint bits = lane_bits(broken);
     if (UNLIKELY(bits != 0u)) {
         global float *red = radiance_channel(b, 0u);
-        Float before = gather(red, id); // the first stage to break a sample is the one that counts
-        scatter(red, id, as_Float((UInt)(BROKEN_SAMPLE + 1u + stage)), bits & lane_bits(before == before));
+        Float before = gather(red, RADIANCE_AT(id)); // the first stage to break a sample is the one that counts
+        scatter(red, RADIANCE_AT(id), as_Float((UInt)(BROKEN_SAMPLE + 1u + stage)), bits & lane_bits(before == before));
     }
     return broken;
 }
@@ -143,8 +149,9 @@ INLINE uint breaking_stage(float red) {
 
 // ---- which pixel and sample a path is --------------------------------------------------------------------
 
-INLINE UInt path_pixel_x(Block b, UInt id) { return TILE_X(id) + (UInt)b.header->tile_x; }
-INLINE UInt path_pixel_y(Block b, UInt id) { return TILE_Y(id) + (UInt)b.header->tile_y; }
-INLINE UInt path_sample(Block b, UInt id) { return id / TILE_PIXELS + (UInt)b.header->first_sample; }
+INLINE uint path_digits(Block b) { return PATH_DIGITS(b.header->path_count / TILE_PIXELS); }
+INLINE UInt path_pixel_x(Block b, UInt id) { return TILE_X(PATH_PIXEL(id, path_digits(b))) + (UInt)b.header->tile_x; }
+INLINE UInt path_pixel_y(Block b, UInt id) { return TILE_Y(PATH_PIXEL(id, path_digits(b))) + (UInt)b.header->tile_y; }
+INLINE UInt path_sample(Block b, UInt id) { return PATH_SAMPLE(id, path_digits(b)) + (UInt)b.header->first_sample; }
 
 #endif

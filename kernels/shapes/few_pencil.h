@@ -1,9 +1,9 @@
-// Triangles that no ray of a pencil, LANES rays from one point, can meet: found LANES triangles at a time, so that camera rays are
+// Facets that no ray of a pencil, LANES rays from one point, can meet: found LANES facets at a time, so that camera rays are
 // tested against a few of the few alone. Nothing is left out that the test of shapes/few_triangles.h would say is hit.
 //
-// A triangle is left out if its corners lie on the outer side of one of the planes around the pencil, by PENCIL_MARGIN at least,
-// and the volume V of the tetrahedron it makes with the origin is no less than PENCIL_VOLUME, both in units of the distance q of its
-// farthest corner and of its cube. (And no less than what makes depths sure.)
+// A facet is left out if its corners lie on the outer side of one of the planes around the pencil, by PENCIL_MARGIN at least,
+// and the volume V of the tetrahedron that its triangles make with the origin is no less than PENCIL_VOLUME, both in units of the distance q of
+// its farthest corner and of its cube. (And no less than what makes depths sure.)
 //
 // Why none is missed: with the areas w that the test takes from the turned corners v, sum(w v) is the depth times the ray's direction
 // d, and the depth is 6 V or -6 V. If the depth is negative it is beyond what is unsure, and no hit. Otherwise take the dot product
@@ -50,7 +50,7 @@ INLINE int find_pencil(Vec3 origin, Vec3 direction, Float unsure, Pencil *p) {
     return 1;
 }
 
-// Bits of those of the LANES triangles from `first` on that rays of the pencil may meet. `corners` holds a row of coordinates
+// Bits of those of the LANES facets from `first` on that rays of the pencil may meet. `corners` holds a row of coordinates
 // after the other, FEW_CORNER_ROWS in all.
 INLINE uint few_in_pencil(global const float *corners, uint first, const Pencil *p) {
 #define FEW_ROW(row) load(corners + (row) * FEW_TRIANGLES_MAX + first)
@@ -58,7 +58,7 @@ INLINE uint few_in_pencil(global const float *corners, uint first, const Pencil 
     // How far the corner nearest to each plane is beyond it.
     Float left = (Float)INFINITY, right = left, below = left, above = left, behind = left;
     Vec3 way = vec3_all(ZERO); // to a corner
-    for (uint k = 0u; k < 3u; k++) {
+    for (uint k = 0u; k < 4u; k++) {
         way = sub(vec3(FEW_ROW(3u * k), FEW_ROW(3u * k + 1u), FEW_ROW(3u * k + 2u)), p->origin);
         Vec3 v = to_local(p->frame, way);
         farthest2 = GREATER(farthest2, length_squared(v));
@@ -68,7 +68,7 @@ INLINE uint few_in_pencil(global const float *corners, uint first, const Pencil 
         above = LESSER(above, madd(-p->high_y, v.z, v.y));
         behind = LESSER(behind, -v.z);
     }
-    Float volume = fabs(dot3(vec3(FEW_ROW(9u), FEW_ROW(10u), FEW_ROW(11u)), way));
+    Float volume = fabs(dot3(vec3(FEW_ROW(12u), FEW_ROW(13u), FEW_ROW(14u)), way));
 #undef FEW_ROW
     Float farthest = sqrt(farthest2), beyond = GREATER(GREATER(GREATER(left, right), GREATER(below, above)), behind);
     // Twice the margin: the normals of the planes are not of unit length, but of no more than two.

@@ -7,7 +7,7 @@
 #ifndef WAVELOBE_SHAPES_FEW_TRIANGLES_H
 #define WAVELOBE_SHAPES_FEW_TRIANGLES_H
 
-#include "shapes/few_pencil.h"
+#include "core/vector.h"
 #include "shapes/near_plane.h"
 #include "shapes/ray.h"
 #include "shared/scene.h"
@@ -19,7 +19,11 @@ typedef struct {
     global const float *vertices;              // 3 each
     global const struct FewTriangle *triangles;
     global const struct FewSummary *summary;
-    global const float *corners; // FEW_CORNER_ROWS
+#if !HAS_MASKS
+    global const struct FewFacet *facets;
+    global const float *corners; // of the facets, FEW_CORNER_ROWS
+    global const uint *numbers;  // facet of each triangle of the scene, by its number
+#endif
 #if HAS_ANALYTIC
     global const struct Analytic *analytics;
     global const struct FewAnalytic *few_analytics;
@@ -166,77 +170,50 @@ typedef struct {
 
 typedef struct {
     TriangleTest test;
-    UInt slot;
+    UInt index; // HIT_NONE: nothing
 } NearestTriangle;
 
-INLINE void meet_triangle(FewTriangles g, const TurnedVertices *turned, uint i, const LaneRay *ray, NearestTriangle *nearest KEY_PARAMETER) {
-    TriangleTest t, *n = &nearest->test;
-    Int hit = hit_triangle(g, turned, i, ray, n->depth, n->area, &t PASS_KEY);
-    n->depth = SELECT(hit, t.depth, n->depth);
-    n->area = SELECT(hit, t.area, n->area);
-    n->wb = SELECT(hit, t.wb, n->wb);
-    n->wc = SELECT(hit, t.wc, n->wc);
-    nearest->slot = SELECT(hit, (UInt)g.triangles[i].slot, nearest->slot);
-}
-
-#if HAS_PENCILS
-// Those that rays of the pencil may meet, in the order of all.
-INLINE void meet_in_pencil(FewTriangles g, const Pencil *pencil, const LaneRay *ray, TurnedVertices *turned, NearestTriangle *nearest KEY_PARAMETER) {
-    Frame f = frame_of_normal(ray->direction);
-    uint n = g.summary->triangle_count;
-    for (uint first = 0u; first < n; first += LANES) {
-        uint bits = few_in_pencil(g.corners, first, pencil) & lane_bits(lanes_below(first, n));
-        while (bits) {
-            POP_LOWEST_BIT(bits, k);
-            for (uint c = 0u; c < 3u; c++) turn_vertex(g, g.triangles[first + k].corner[c], ray->origin, f, turned);
-            meet_triangle(g, turned, first + k, ray, nearest PASS_KEY);
-        }
-    }
-}
-#endif
-
 // The nearest hit of each ray in (0, limit).
-INLINE LaneHit closest_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from KEY_PARAMETER) {
-    LaneRay ray = lane_ray(g, origin, direction, from);
+INLINE NearestTriangle closest_of_all(FewTriangles g, const LaneRay *ray, Float limit KEY_PARAMETER) {
     TurnedVertices turned;
+    turn_vertices(g, ray->origin, ray->direction, &turned);
     NearestTriangle nearest = {{ZERO, ZERO, ONE, limit * g.summary->per_length, TRUE_MASK}, (UInt)HIT_NONE};
-#if HAS_PENCILS
-    Pencil pencil;
-    if (find_pencil(ray.origin, direction, ray.unsure, &pencil)) {
-        meet_in_pencil(g, &pencil, &ray, &turned, &nearest PASS_KEY);
-    } else
-#endif
-    {
-        turn_vertices(g, ray.origin, direction, &turned);
-        for (uint i = 0u; i < g.summary->triangle_count; i++) meet_triangle(g, &turned, i, &ray, &nearest PASS_KEY);
+    TriangleTest *n = &nearest.test;
+    for (uint i = 0u; i < g.summary->triangle_count; i++) {
+        TriangleTest t;
+        Int hit = hit_triangle(g, &turned, i, ray, n->depth, n->area, &t PASS_KEY);
+        n->depth = SELECT(hit, t.depth, n->depth);
+        n->area = SELECT(hit, t.area, n->area);
+        n->wb = SELECT(hit, t.wb, n->wb);
+        n->wc = SELECT(hit, t.wc, n->wc);
+        nearest.index = SELECT(hit, (UInt)i, nearest.index);
     }
-    Int found = nearest.slot != (UInt)HIT_NONE;
-    LaneHit h = {SELECT(found, nearest.test.depth / nearest.test.area * (1.0f / g.summary->per_length), limit),
-                 nearest.test.wb / nearest.test.area, nearest.test.wc / nearest.test.area, nearest.slot};
-#if HAS_ANALYTIC
-    closest_few_analytic(g, origin, direction, &h PASS_KEY);
-#endif
+    return nearest;
+}
+
+INLINE LaneHit hit_of_triangle(FewTriangles g, const NearestTriangle *nearest, Float limit) {
+    const TriangleTest *n = &nearest->test;
+    Int found = nearest->index != (UInt)HIT_NONE;
+    UInt slot = GATHER_UINT_FIELD(g.triangles, FewTriangle, SELECT(found, nearest->index, (UInt)0u), slot);
+    LaneHit h = {SELECT(found, n->depth / n->area * (1.0f / g.summary->per_length), limit), n->wb / n->area, n->wc / n->area,
+                 SELECT(found, slot, (UInt)HIT_NONE)};
     return h;
 }
 
 // How many triangles are tested before asking whether all rays are blocked.
 #define FEW_BETWEEN_LOOKS 4u
 
-// Lanes of `wanted` whose ray hits anything in (0, limit).
-INLINE Int any_of_few(FewTriangles g, Vec3 origin, Vec3 direction, Float limit, UInt from, Int wanted KEY_PARAMETER) {
-    LaneRay ray = lane_ray(g, origin, direction, from);
+// Lanes of `wanted` whose ray hits any triangle in (0, limit).
+INLINE Int any_of_all(FewTriangles g, const LaneRay *ray, Float limit, Int wanted KEY_PARAMETER) {
     TurnedVertices turned;
-    turn_vertices(g, ray.origin, direction, &turned);
+    turn_vertices(g, ray->origin, ray->direction, &turned);
     Float reach = limit * g.summary->per_length;
     KeptMask left = keep_mask(wanted);
     for (uint i = 0u; i < g.summary->triangle_count; i++) {
         TriangleTest t;
-        left &= keep_mask(!hit_triangle(g, &turned, i, &ray, reach, ONE, &t PASS_KEY));
+        left &= keep_mask(!hit_triangle(g, &turned, i, ray, reach, ONE, &t PASS_KEY));
         if (i % FEW_BETWEEN_LOOKS == 0u && !any_lane(kept_mask(left))) break;
     }
-#if HAS_ANALYTIC
-    left &= keep_mask(!any_few_analytic(g, origin, direction, limit, kept_mask(left) PASS_KEY));
-#endif
     return wanted & !kept_mask(left);
 }
 

@@ -21,7 +21,7 @@
 #endif
 
 #if HAS_FEW_TRIANGLES
-#include "shapes/few_triangles.h"
+#include "shapes/few_facets.h"
 
 typedef FewTriangles Geometry;
 #if HAS_ANALYTIC
@@ -31,11 +31,18 @@ typedef FewTriangles Geometry;
 #define FEW_ANALYTIC_PARAMETER
 #define FEW_ANALYTIC_ARGUMENT
 #endif
-#define GEOMETRY_PARAMETERS                                                                                                  \
-    global const float *few_vertices, global const struct FewTriangle *few_triangles, global const float *few_corners        \
+#if HAS_MASKS
+#define FACET_PARAMETERS
+#define FACET_ARGUMENTS
+#else
+#define FACET_PARAMETERS , global const struct FewFacet *few_facets, global const float *few_corners, global const uint *few_numbers
+#define FACET_ARGUMENTS , few_facets, few_corners, few_numbers
+#endif
+#define GEOMETRY_PARAMETERS                                                               \
+    global const float *few_vertices, global const struct FewTriangle *few_triangles FACET_PARAMETERS \
         FEW_ANALYTIC_PARAMETER OPACITY_PARAMETER
 #define GEOMETRY_VIEW \
-    {few_vertices, few_triangles, &parameters->few, few_corners FEW_ANALYTIC_ARGUMENT OPACITY_ARGUMENT}
+    {few_vertices, few_triangles, &parameters->few FACET_ARGUMENTS FEW_ANALYTIC_ARGUMENT OPACITY_ARGUMENT}
 
 #else
 #include "shapes/trace_groups.h"

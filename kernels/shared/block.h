@@ -10,14 +10,23 @@
 #define TILE_WIDTH 16u
 #define TILE_PIXELS 256u
 #define BLOCK_SAMPLES 16u // of each pixel at the most: radiance of a block's paths stays in the core's cache
-// Pixels of a tile go in 4 x 4 squares, so that 16 neighbouring ids are neighbours in the picture too: the bits of an id
-// are yyxx of the square, then yyxx inside it.
-#define TILE_X(id) (((id) & 3u) | (((id) >> 2) & 12u))
-#define TILE_Y(id) ((((id) >> 2) & 3u) | (((id) >> 4) & 12u))
+// Pixels of a tile go in 4 x 4 squares, so that 16 in a row are neighbours in the picture too: the bits of a pixel are yyxx of the
+// square, then yyxx inside it.
+#define TILE_X(pixel) (((pixel) & 3u) | (((pixel) >> 2) & 12u))
+#define TILE_Y(pixel) ((((pixel) >> 2) & 3u) | (((pixel) >> 4) & 12u))
+
+// Ids of the paths of a block, in the order in which they start: 2^digits samples of a pixel one after the other, since they see more
+// alike than neighbours do, then those of the next pixel, and after the tile's last pixel the next samples of the first. So many as
+// divide the samples, BLOCK_SAMPLES at the most.
+#define PATH_DIGITS(samples) ((samples) & 1u ? 0u : (samples) & 2u ? 1u : (samples) & 4u ? 2u : (samples) & 8u ? 3u : (samples) & 16u ? 4u : 0u)
+#define PATH_PIXEL(id, digits) ((id) >> (digits) & (TILE_PIXELS - 1u))
+#define PATH_SAMPLE(id, digits) ((((id) >> (digits)) / TILE_PIXELS << (digits)) | ((id) & ((1u << (digits)) - 1u)))
+#define ID_OF_PATH(pixel, sample, digits) \
+    (((((sample) >> (digits)) * TILE_PIXELS + (pixel)) << (digits)) | ((sample) & ((1u << (digits)) - 1u)))
 
 #define QUEUE_PADDING 16u     // vector stores may run past the last slot
 #define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h; one more with a light tree, one if that serves glossy lobes, one with instances, one with media
-#define SHADOW_FIELDS 12u     // one more with media
+#define SHADOW_FIELDS 12u     // one more with media, one with facets
 
 // Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.
 #define QUEUE_RAYS 0u
@@ -38,8 +47,8 @@
 struct BlockHeader {
     Uint32 tile_x, tile_y;     // film coordinates of the tile's first pixel
     Uint32 first_sample;       // index of the first sample
-    Uint32 path_count;         // TILE_PIXELS * samples; path id = sample * TILE_PIXELS + pixel of the tile
-    Uint32 next_path;          // how many are started, in the order of stages/generate.h
+    Uint32 path_count;         // TILE_PIXELS * samples
+    Uint32 next_path;          // how many are started
     Uint32 count[QUEUE_COUNT]; // items in each queue
     Uint32 nonfinite_path;     // id of a path whose sample was not finite; WAVELOBE_NONE: none
     Uint32 started;            // camera rays of the last round

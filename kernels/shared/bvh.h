@@ -40,14 +40,31 @@ struct FewTriangle {
     Uint32 corner[3];
     Uint32 slot;      // what a hit names
     Uint32 primitive; // as in its triangle block
+    Uint32 facet;     // that it is part of
 };
-WAVELOBE_CHECK_SIZE(FewTriangle, 20);
+WAVELOBE_CHECK_SIZE(FewTriangle, 24);
 
 #define FEW_TRIANGLES_MAX 96u // a multiple of LANES
 #define FEW_VERTICES_MAX 128u
-// Their corners once more, FEW_TRIANGLES_MAX values a row, to see LANES triangles at once: x, y and z of each corner and of the normal,
-// as long as twice the area.
-#define FEW_CORNER_ROWS 12u
+
+// A parallelogram of two of them, or a triangle left over: where u and v are between -1 and 1, and of a triangle u + v is not above
+// zero. All in the unit of the set, points relative to its center.
+struct FewFacet {
+    float normal[3], offset;            // unit; of the points p of the plane normal . p is the offset
+    float u[4], v[4];                   // u is the product of the first three with a point, plus the fourth
+    float height_u, height_v, height_w; // what u, v and u + v are to be multiplied with to be distances
+    Uint32 part[2];                     // triangles on either side of u + v = 0: FACET_PART
+};
+WAVELOBE_CHECK_SIZE(FewFacet, 68);
+
+// A slot, and what the second and third corner of its triangle are: 0: the one across from u + v = 0; 1: where u, 2: where v is larger
+// than in the middle, seen from that one.
+#define FACET_PART(slot, second, third) ((slot) | (second) << 28 | (third) << 30)
+#define FACET_NONE 0xffffffffu
+
+// Corners of the facets, FEW_TRIANGLES_MAX values a row, to see LANES of them at once: x, y and z of each corner and of the normal,
+// as long as twice the area of a triangle. A triangle's last corner is there twice.
+#define FEW_CORNER_ROWS 15u
 
 // Their spheres, disks and cylinders, each within its box.
 struct FewAnalytic {
@@ -65,8 +82,10 @@ struct FewSummary {
     float radius;
     float per_length; // units in one of the scene's
     Uint32 triangle_count, vertex_count, analytic_count;
+    Uint32 facet_count, parallelogram_count; // those come first
+    Uint32 number_count;                     // triangle numbers that few_numbers has the facet of
 };
-WAVELOBE_CHECK_SIZE(FewSummary, 32);
+WAVELOBE_CHECK_SIZE(FewSummary, 44);
 
 // One place where a group of shapes stands. A point p of the group is at to_world's linear part times p plus its
 // translation; rays are taken to the group by the inverse linear part, from that translation on.

@@ -20,8 +20,9 @@ struct Light {
     Uint32 smooth_cone;           // spot: 1: between the angles the square of what is linear in the cosine; 0: linear in the angle
     float inverse_range;          // point, spot: over the distance from which on there is no light, 1 / m; 0: none
     Uint32 place;                 // of its leaf in the light tree: LIGHT_PLACE
+    Uint32 triangle;              // number of its triangle or the first of two; WAVELOBE_NONE: of another kind
 };
-WAVELOBE_CHECK_SIZE(Light, 124);
+WAVELOBE_CHECK_SIZE(Light, 128);
 
 #define LIGHT_CHILDREN 8
 

@@ -55,7 +55,7 @@ struct RenderParameters {
     float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
     Uint32 camera_medium; // that the camera is in
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 164);
+WAVELOBE_CHECK_SIZE(RenderParameters, 176);
 
 // Squares of red, green and blue, and of X, Y and Z, that a pixel holds where they are asked for.
 #define MOMENT_CHANNELS 6u

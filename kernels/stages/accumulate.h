@@ -21,11 +21,12 @@ INLINE void add_moments(Block block, const SceneView *scene) {
     for (uint id = 0u; id < block.header->path_count; id += LANES) {
         FilmSample at = film_sample(block, scene, LANE_INDEX + (UInt)id);
         for (uint lane = 0u; lane < LANES; lane++) {
-            uint x = block.header->tile_x + TILE_X(id + lane) - p->window_x;
-            uint y = block.header->tile_y + TILE_Y(id + lane) - p->window_y;
+            uint pixel = PATH_PIXEL(id + lane, path_digits(block));
+            uint x = block.header->tile_x + TILE_X(pixel) - p->window_x;
+            uint y = block.header->tile_y + TILE_Y(pixel) - p->window_y;
             if (x >= p->window_width || y >= p->window_height) continue;
-            float r = radiance_channel(block, 0u)[id + lane], g = radiance_channel(block, 1u)[id + lane];
-            float b = radiance_channel(block, 2u)[id + lane];
+            global const float *radiance = radiance_channel(block, 0u) + RADIANCE_AT(id + lane);
+            float r = radiance[0], g = radiance[1], b = radiance[2];
             if (!(is_finite(r) & is_finite(g) & is_finite(b))) continue;
             double values[MOMENT_CHANNELS] = {r, g, b, 0.412453 * r + 0.357580 * g + 0.180423 * b,
                                               0.212671 * r + 0.715160 * g + 0.072169 * b,
@@ -43,8 +44,9 @@ INLINE void weigh_samples(Block block, const SceneView *scene) {
     for (uint first = 0u; first < block.header->path_count; first += LANES) {
         Float weight = film_sample(block, scene, LANE_INDEX + (UInt)first).weight;
         for (uint c = 0u; c < 3u; c++) {
-            global float *channel = radiance_channel(block, c) + first;
-            store(channel, load(channel) * weight);
+            global float *channel = radiance_channel(block, c);
+            UInt at = RADIANCE_AT(LANE_INDEX + (UInt)first);
+            scatter(channel, at, gather(channel, at) * weight, lane_bits(TRUE_MASK));
         }
     }
 }
@@ -61,13 +63,11 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
 #if HAS_SIGNED_FILTER
     weigh_samples(block, scene);
 #endif
-    global float *red = radiance_channel(block, 0u), *green = radiance_channel(block, 1u);
-    global float *blue = radiance_channel(block, 2u);
     global struct FilmPixel *film = scene->film;
 #if HAS_ERROR_ESTIMATE
     film += HALF_OF(h->first_sample) * (size_t)parameters->window_width * parameters->window_height;
 #endif
-    uint samples = 0u;
+    uint samples = 0u, digits = path_digits(block), of_pixel = h->path_count / TILE_PIXELS;
     for (uint pixel = 0u; pixel < TILE_PIXELS; pixel++) {
         uint x = h->tile_x + TILE_X(pixel) - parameters->window_x;
         uint y = h->tile_y + TILE_Y(pixel) - parameters->window_y;
@@ -75,18 +75,20 @@ INLINE uint run_accumulate(Block block, const SceneView *scene) {
         global struct FilmPixel *out = film + (size_t)y * parameters->window_width + x;
         double r = out->sum[0], g = out->sum[1], b = out->sum[2];
         uint finite = 0u, nonfinite = 0u;
-        for (uint id = pixel; id < h->path_count; id += TILE_PIXELS) {
-            if (is_finite(red[id]) & is_finite(green[id]) & is_finite(blue[id])) {
-                r += red[id];
-                g += green[id];
-                b += blue[id];
+        for (uint sample = 0u; sample < of_pixel; sample++) {
+            uint id = ID_OF_PATH(pixel, sample, digits);
+            global float *radiance = radiance_channel(block, 0u) + RADIANCE_AT(id);
+            if (is_finite(radiance[0]) & is_finite(radiance[1]) & is_finite(radiance[2])) {
+                r += radiance[0];
+                g += radiance[1];
+                b += radiance[2];
                 finite++;
             } else {
                 h->nonfinite_path = id;
-                h->nonfinite_stage = breaking_stage(red[id]);
+                h->nonfinite_stage = breaking_stage(radiance[0]);
                 nonfinite++;
             }
-            red[id] = green[id] = blue[id] = 0.0f;
+            radiance[0] = radiance[1] = radiance[2] = 0.0f;
         }
         out->sum[0] = r, out->sum[1] = g, out->sum[2] = b;
         out->samples += finite;

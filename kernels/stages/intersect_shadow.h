@@ -20,6 +20,11 @@ INLINE void follow_shadow_rays(Block block, const SceneView *scene, Queue shadow
     }
 }
 #elif HAS_FEW_TRIANGLES
+#if HAS_FACETS
+#define SHADOW_AIM(shadow, i) read_uint(shadow, SHADOW_TO, i)
+#else
+#define SHADOW_AIM(shadow, i) (UInt)HIT_NONE
+#endif
 // LANES rays at a time against everything. A path has one shadow ray at the most, so no two lanes share an id.
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
@@ -28,7 +33,7 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
         UInt id = SELECT(live, read_uint(shadow, SHADOW_ID, i), (UInt)0u);
         Vec3 direction = read_vec3(shadow, SHADOW_DIRECTION, i);
         Int blocked = any_of_few(geometry, read_vec3(shadow, SHADOW_ORIGIN, i), direction, read_field(shadow, SHADOW_T, i),
-                                 read_uint(shadow, SHADOW_FROM, i), live KEY_ARGUMENT(geometry, block, id, direction));
+                                 read_uint(shadow, SHADOW_FROM, i), SHADOW_AIM(shadow, i), live KEY_ARGUMENT(geometry, block, id, direction));
         add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), lane_bits(live & !blocked));
     }
 }
@@ -54,7 +59,7 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
         load_ray(&r, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
         if (trace_any(geometry, &r)) continue;
         uint id = slot_uint(shadow, SHADOW_ID, i);
-        for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[id] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);
+        for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[RADIANCE_AT(id)] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);
     }
 }
 #endif

@@ -26,7 +26,8 @@ INLINE struct Packed3 packed_vec3(Vec3 v) {
 }
 
 INLINE struct Packed3 path_radiance(Block block, uint id) {
-    struct Packed3 p = {radiance_channel(block, 0u)[id], radiance_channel(block, 1u)[id], radiance_channel(block, 2u)[id]};
+    global const float *radiance = radiance_channel(block, 0u) + RADIANCE_AT(id);
+    struct Packed3 p = {radiance[0], radiance[1], radiance[2]};
     return p;
 }
 
@@ -110,7 +111,7 @@ kernel void replay_path(global struct BlockHeader *headers, global float *blocks
     } while (count[QUEUE_RAYS] + count[QUEUE_SHADOW] != 0u);
     replay_log->count = written;
     replay_log->radiance = path_radiance(block, id);
-    replay_log->stage = breaking_stage(radiance_channel(block, 0u)[id]);
+    replay_log->stage = breaking_stage(radiance_channel(block, 0u)[RADIANCE_AT(id)]);
 }
 
 #endif

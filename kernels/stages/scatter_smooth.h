@@ -76,6 +76,9 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
     append_vec3(shadow, SHADOW_CONTRIBUTION, at, contribution, bits);
     append_uint(shadow, SHADOW_ID, at, path->id, bits);
     append_uint(shadow, SHADOW_FROM, at, surface->primitive, bits);
+#if HAS_FACETS
+    append_uint(shadow, SHADOW_TO, at, as_UInt(light_field(in, triangle)), bits);
+#endif
 #if HAS_MEDIA
     UInt medium = medium_beyond(scene->media, scene->surfaces, surface, light.direction, path->medium);
     append_uint(shadow, SHADOW_MEDIUM, at, medium, bits);

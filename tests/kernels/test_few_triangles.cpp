@@ -15,19 +15,19 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 // One work-item a group of 16 rays, at any width.
 const char* const source = R"(
-#include "shapes/few_triangles.h"
+#include "shapes/few_facets.h"
 
 #define RAY(k) load(rays + (size_t)(k) * count + i)
 
 kernel void trace(global const float *vertices, global const struct FewTriangle *triangles,
-                  global const struct FewSummary *summary, global const float *corners, global const float *rays, uint count,
-                  global float *hits) {
-    FewTriangles geometry = {vertices, triangles, summary, corners};
+                  global const struct FewSummary *summary, global const struct FewFacet *facets, global const float *corners,
+                  global const uint *numbers, global const float *rays, uint count, global float *hits) {
+    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers};
     uint first = (uint)get_global_id(0) * 16u;
     for (uint i = first; i < first + 16u; i += LANES) {
         Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
         LaneHit hit = closest_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)));
-        Int any = any_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)), TRUE_MASK);
+        Int any = any_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)), (UInt)HIT_NONE, TRUE_MASK);
         store(hits + i, hit.t);
         store(hits + count + i, hit.u);
         store(hits + 2 * count + i, hit.v);
@@ -37,23 +37,23 @@ kernel void trace(global const float *vertices, global const struct FewTriangle 
 }
 )";
 
-// How many triangles are left for each group of rays: all of them where the rays are no pencil.
+// How many facets are left for each group of rays: all of them where the rays are no pencil.
 const char* const pencil_source = R"(
-#include "shapes/few_triangles.h"
+#include "shapes/few_facets.h"
 #define RAY(k) load(rays + (size_t)(k) * count + i)
 
 kernel void count_left(global const struct FewSummary *summary, global const float *corners, global const float *rays, uint count,
                        global uint *left) {
     uint i = (uint)get_global_id(0) * LANES;
-    FewTriangles geometry = {0, 0, summary, corners};
+    FewTriangles geometry = {0, 0, summary, 0, corners, 0};
     Vec3 direction = vec3(RAY(3), RAY(4), RAY(5));
     LaneRay ray = lane_ray(geometry, vec3(RAY(0), RAY(1), RAY(2)), direction, (UInt)HIT_NONE);
     Pencil pencil;
-    left[get_global_id(0)] = summary->triangle_count;
+    left[get_global_id(0)] = summary->facet_count;
     if (!find_pencil(ray.origin, direction, ray.unsure, &pencil)) return;
     left[get_global_id(0)] = 0u;
-    for (uint first = 0u; first < summary->triangle_count; first += LANES) {
-        uint present = lane_bits(lanes_below(first, summary->triangle_count));
+    for (uint first = 0u; first < summary->facet_count; first += LANES) {
+        uint present = lane_bits(lanes_below(first, summary->facet_count));
         left[get_global_id(0)] += popcount(few_in_pencil(corners, first, &pencil) & present);
     }
 }
@@ -83,11 +83,8 @@ public:
         const std::vector<float> packed = packed_rays(rays, count);
         std::vector<float> hits(5 * count);
         const auto ray_count = static_cast<cl_uint>(count);
-        const std::vector<float> vertices = few.vertices.empty() ? std::vector<float>(3) : few.vertices;
         const std::vector<FewSummary> summary{few.summary};
-        const std::vector<float> corners = few.corners.empty() ? std::vector<float>(FEW_CORNER_ROWS * FEW_TRIANGLES_MAX) : few.corners;
-        const std::vector<FewTriangle> triangles = few.triangles.empty() ? std::vector<FewTriangle>(1) : few.triangles;
-        probe_.run("trace", count / 16, vertices, triangles, summary, corners, packed, ray_count, hits);
+        probe_.run("trace", count / 16, few.vertices, few.triangles, summary, few.facets, few.corners, few.numbers, packed, ray_count, hits);
         std::vector<TestHit> out(rays.size());
         for (std::size_t i = 0; i < rays.size(); ++i) {
             out[i].t = hits[i];

@@ -47,7 +47,7 @@ TEST_P(Accumulate, AddsSamplesInOrder) {
                 while (TILE_X(id) != x || TILE_Y(id) != y) ++id;
                 for (std::uint32_t sample = 0; sample < 3; ++sample) {
                     for (std::uint32_t c = 0; c < 3; ++c)
-                        expected.sum[c] += static_cast<double>(value(sample * TILE_PIXELS + id, c));
+                        expected.sum[c] += static_cast<double>(value(ID_OF_PATH(id, sample, PATH_DIGITS(3U)), c));
                 }
                 expected.samples += 3;
             }
@@ -77,22 +77,22 @@ TEST_P(Accumulate, LeavesOutWhatLiesBeyondTheWindow) {
 TEST_P(Accumulate, CountsWhatIsNotFinite) {
     StageBench bench(film_scene(), GetParam());
     fill_radiance(bench, 2 * TILE_PIXELS);
-    bench.radiance(5, 1) = std::numeric_limits<float>::quiet_NaN();
-    bench.radiance(TILE_PIXELS + 6, 2) = std::numeric_limits<float>::infinity();
-    bench.radiance(7, 0) = bench.radiance(TILE_PIXELS + 7, 0) = -std::numeric_limits<float>::infinity();
+    bench.radiance(10, 1) = std::numeric_limits<float>::quiet_NaN();
+    bench.radiance(13, 2) = std::numeric_limits<float>::infinity();
+    bench.radiance(14, 0) = bench.radiance(15, 0) = -std::numeric_limits<float>::infinity();
     bench.run("accumulate");
-    // Ids 4 to 7 are the second row's first four pixels.
+    // Pixels 4 to 7 are the second row's first four; ids 8 to 15 are their two samples each.
     const auto pixel = [&](std::uint32_t x) { return bench.film()[20 + x]; };
     EXPECT_EQ(pixel(0).samples, 2U);
     EXPECT_EQ(pixel(1).samples, 1U);
     EXPECT_EQ(pixel(1).nonfinite, 1U);
-    EXPECT_EQ(pixel(1).sum[1], static_cast<double>(value(TILE_PIXELS + 5, 1)));
+    EXPECT_EQ(pixel(1).sum[1], static_cast<double>(value(11, 1)));
     EXPECT_EQ(pixel(2).samples, 1U);
-    EXPECT_EQ(pixel(2).sum[2], static_cast<double>(value(6, 2)));
+    EXPECT_EQ(pixel(2).sum[2], static_cast<double>(value(12, 2)));
     EXPECT_EQ(pixel(3).samples, 0U);
     EXPECT_EQ(pixel(3).nonfinite, 2U);
     EXPECT_EQ(pixel(3).sum[0], 0.0);
-    EXPECT_EQ(bench.header().nonfinite_path % TILE_PIXELS, 7U) << "one of them is named";
+    EXPECT_EQ(bench.header().nonfinite_path / 2, 7U) << "one of them is named";
 }
 
 TEST_P(Accumulate, WaitsForPathsThatAreUnderWay) {

@@ -26,13 +26,6 @@ glm::dvec2 film_position(const Scene& scene, const glm::vec3& direction) {
     return {0.5 * scene.film.width - d.x / d.z / pixel_size, 0.5 * scene.film.height - d.y / d.z / pixel_size};
 }
 
-// The n-th path that a block of so many samples a pixel starts.
-std::uint32_t started_id(std::uint32_t n, std::uint32_t samples, int lanes) {
-    const std::uint32_t together = std::min(samples & (0U - samples), static_cast<std::uint32_t>(lanes));
-    const std::uint32_t turn = n / together, pixel = turn % TILE_PIXELS, sample = turn / TILE_PIXELS * together + n % together;
-    return sample * TILE_PIXELS + pixel;
-}
-
 TEST_P(Generate, StartsThePathsInsideTheWindow) {
     const Scene scene = film_scene();
     StageBench bench(scene, GetParam(), 1024);
@@ -44,40 +37,43 @@ TEST_P(Generate, StartsThePathsInsideTheWindow) {
     EXPECT_EQ(bench.header().next_path, 2 * TILE_PIXELS);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t n = 0; n < 2 * TILE_PIXELS; ++n) {
-        const std::uint32_t id = started_id(n, 2, GetParam());
-        if (TILE_X(id) < 8 && TILE_Y(id) < 8) expected.push_back(id);
+        const std::uint32_t pixel = n / 2;
+        if (TILE_X(pixel) < 8 && TILE_Y(pixel) < 8) expected.push_back(n);
     }
     EXPECT_EQ(expected.size(), 2U * 64U);
     EXPECT_EQ(bench.ids(QUEUE_RAYS), expected);
 }
 
 TEST_P(Generate, RaysPassThroughTheirPixels) {
-    const Scene scene = film_scene();
-    StageBench bench(scene, GetParam(), 1024);
-    bench.header().tile_x = 16;
-    bench.header().tile_y = 0;
-    bench.header().path_count = 3 * TILE_PIXELS;
-    bench.header().next_path = 0;
-    bench.run("generate");
-    ASSERT_EQ(bench.header().count[QUEUE_RAYS], 3 * TILE_PIXELS);
-    const glm::dvec3 eye{scene.camera.to_world[3]};
-    const glm::dvec3 forward{scene.camera.to_world[2]};
-    for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
-        const TestPath p = bench.path(QUEUE_RAYS, i);
-        const glm::dvec2 at = film_position(scene, p.direction);
-        const double rounding = 1e-4;  // of a pixel: a direction's rounding of 1e-7 over a pixel's angle of 0.02
-        ASSERT_GE(at.x, 16 + TILE_X(p.id) - rounding);
-        ASSERT_LE(at.x, 17 + TILE_X(p.id) + rounding);
-        ASSERT_GE(at.y, TILE_Y(p.id) - rounding);
-        ASSERT_LE(at.y, TILE_Y(p.id) + 1 + rounding);
-        ASSERT_NEAR(glm::length(glm::dvec3(p.direction)), 1.0, stage_rounding);
-        // Planes of depth bound the ray.
-        const double stretch = 1.0 / glm::dot(glm::dvec3(p.direction), forward);
-        expect_close(p.origin, eye + glm::dvec3(p.direction) * stretch * 0.25);
-        ASSERT_NEAR(p.t, stretch * 99.75, 99.75 * stage_rounding);
-        ASSERT_EQ(p.throughput, glm::vec3(1));
-        ASSERT_LT(p.pdf, 0.0F);
-        ASSERT_EQ(p.depth, 0U);
+    for (const std::uint32_t samples : {2U, 3U}) {
+        const Scene scene = film_scene();
+        StageBench bench(scene, GetParam(), 1024);
+        bench.header().tile_x = 16;
+        bench.header().tile_y = 0;
+        bench.header().path_count = samples * TILE_PIXELS;
+        bench.header().next_path = 0;
+        bench.run("generate");
+        ASSERT_EQ(bench.header().count[QUEUE_RAYS], samples * TILE_PIXELS);
+        const glm::dvec3 eye{scene.camera.to_world[3]};
+        const glm::dvec3 forward{scene.camera.to_world[2]};
+        for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
+            const TestPath p = bench.path(QUEUE_RAYS, i);
+            const glm::dvec2 at = film_position(scene, p.direction);
+            const double rounding = 1e-4;  // of a pixel: a direction's rounding of 1e-7 over a pixel's angle of 0.02
+            const std::uint32_t pixel = PATH_PIXEL(p.id, PATH_DIGITS(samples));
+            ASSERT_GE(at.x, 16 + TILE_X(pixel) - rounding);
+            ASSERT_LE(at.x, 17 + TILE_X(pixel) + rounding);
+            ASSERT_GE(at.y, TILE_Y(pixel) - rounding);
+            ASSERT_LE(at.y, TILE_Y(pixel) + 1 + rounding);
+            ASSERT_NEAR(glm::length(glm::dvec3(p.direction)), 1.0, stage_rounding);
+            // Planes of depth bound the ray.
+            const double stretch = 1.0 / glm::dot(glm::dvec3(p.direction), forward);
+            expect_close(p.origin, eye + glm::dvec3(p.direction) * stretch * 0.25);
+            ASSERT_NEAR(p.t, stretch * 99.75, 99.75 * stage_rounding);
+            ASSERT_EQ(p.throughput, glm::vec3(1));
+            ASSERT_LT(p.pdf, 0.0F);
+            ASSERT_EQ(p.depth, 0U);
+        }
     }
 }
 
@@ -95,9 +91,9 @@ TEST_P(Generate, SamplesDependOnPixelAndIndexAlone) {
         return bench.path(QUEUE_RAYS, i).direction;
     };
     const std::uint32_t pixel = 77;
-    const glm::vec3 sample5 = direction(5, pixel);
-    EXPECT_EQ(direction(4, TILE_PIXELS + pixel), sample5);
-    EXPECT_NE(direction(6, pixel), sample5);
+    const glm::vec3 sample5 = direction(5, 2 * pixel);
+    EXPECT_EQ(direction(4, 2 * pixel + 1), sample5);
+    EXPECT_NE(direction(6, 2 * pixel), sample5);
 }
 
 TEST_P(Generate, FillsFreeSlotsAndKeepsTheOthers) {
@@ -122,25 +118,24 @@ TEST_P(Generate, FillsFreeSlotsAndKeepsTheOthers) {
         EXPECT_EQ(bench.path(QUEUE_RAYS, i).throughput, waiting[i].throughput);
         EXPECT_EQ(bench.path(QUEUE_RAYS, i).depth, 3U);
     }
-    for (std::uint32_t i = 0; i < started; ++i) EXPECT_EQ(bench.path(QUEUE_RAYS, 10 + i).id, started_id(2 * TILE_PIXELS + i, 4, lanes));
+    for (std::uint32_t i = 0; i < started; ++i) EXPECT_EQ(bench.path(QUEUE_RAYS, 10 + i).id, 2 * TILE_PIXELS + i);
 }
 
 // Rays of one pixel are the most alike.
-TEST_P(Generate, SamplesOfAPixelStartTogether) {
-    const auto lanes = static_cast<std::uint32_t>(GetParam());
-    for (const std::uint32_t samples : {1U, 3U, 8U, 12U, 16U}) {
-        StageBench bench(film_scene(), GetParam(), 1024);
-        bench.header().path_count = samples * TILE_PIXELS;
-        bench.header().next_path = 0;
-        bench.run("generate");
+TEST(PathIds, NameEachSampleOnceAndThoseOfAPixelInARow) {
+    for (std::uint32_t samples = 1; samples <= BLOCK_SAMPLES; ++samples) {
+        const std::uint32_t digits = PATH_DIGITS(samples), together = samples & (0U - samples);
+        EXPECT_EQ(1U << digits, together);
         std::vector<bool> seen(std::size_t{samples} * TILE_PIXELS);
-        const std::uint32_t together = samples % 2 == 1 ? 1 : std::min(samples == 12 ? 4U : samples, lanes);
-        for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
-            const std::uint32_t id = bench.path(QUEUE_RAYS, i).id;
-            ASSERT_LT(id, seen.size());
-            ASSERT_FALSE(seen[id]) << "started twice";
-            seen[id] = true;
-            EXPECT_EQ(id % TILE_PIXELS, i / together % TILE_PIXELS) << samples << " samples, path " << i;
+        for (std::uint32_t id = 0; id < seen.size(); ++id) {
+            const std::uint32_t pixel = PATH_PIXEL(id, digits), sample = PATH_SAMPLE(id, digits);
+            ASSERT_EQ(ID_OF_PATH(pixel, sample, digits), id);
+            ASSERT_EQ(pixel, id / together % TILE_PIXELS);
+            ASSERT_LT(sample, samples);
+            ASSERT_FALSE(seen[sample * TILE_PIXELS + pixel]);
+            seen[sample * TILE_PIXELS + pixel] = true;
+            const std::uint32_t before = id < together * TILE_PIXELS ? 0 : PATH_SAMPLE(id - together * TILE_PIXELS, digits) + 1;
+            ASSERT_GE(sample, before) << "in order";
         }
     }
 }

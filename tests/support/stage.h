@@ -41,6 +41,7 @@ struct TestShadowRay {
     std::uint32_t id = 0;
     glm::vec3 origin{0};
     std::uint32_t from = HIT_NONE;
+    std::uint32_t to = HIT_NONE;  // only in scenes with facets
 };
 
 class StageBench {
@@ -134,6 +135,7 @@ public:
             set_bits(QUEUE_SHADOW, layout_[shadow_id], i, rays[i].id);
             set_vector(QUEUE_SHADOW, layout_[shadow_origin], i, rays[i].origin);
             set_bits(QUEUE_SHADOW, layout_[shadow_from], i, rays[i].from);
+            if (scene_.features.facets()) set_bits(QUEUE_SHADOW, layout_[shadow_to], i, rays[i].to);
         }
         header().count[QUEUE_SHADOW] = static_cast<std::uint32_t>(rays.size());
     }
@@ -143,7 +145,8 @@ public:
                 get_vector(QUEUE_SHADOW, layout_[shadow_contribution], slot),
                 get_bits(QUEUE_SHADOW, layout_[shadow_id], slot),
                 get_vector(QUEUE_SHADOW, layout_[shadow_origin], slot),
-                get_bits(QUEUE_SHADOW, layout_[shadow_from], slot)};
+                get_bits(QUEUE_SHADOW, layout_[shadow_from], slot),
+                scene_.features.facets() ? get_bits(QUEUE_SHADOW, layout_[shadow_to], slot) : HIT_NONE};
     }
 
     std::vector<std::uint32_t> ids(std::uint32_t queue) {
@@ -154,7 +157,7 @@ public:
 
     // Radiance that a path has gathered.
     float& radiance(std::uint32_t id, std::uint32_t channel) {
-        return memory()[layout_[radiance_offset] + channel * layout_[radiance_stride] + id];
+        return memory()[layout_[radiance_offset] + 3 * id + channel];
     }
     glm::vec3 radiance(std::uint32_t id) { return {radiance(id, 0), radiance(id, 1), radiance(id, 2)}; }
 
@@ -162,7 +165,6 @@ private:
     enum LayoutEntry : std::size_t {
         first_offset = 0,
         radiance_offset = QUEUE_COUNT,
-        radiance_stride,
         queue_stride,
         path_t,
         path_hit,
@@ -183,14 +185,15 @@ private:
         shadow_id,
         shadow_origin,
         shadow_from,
+        shadow_to,
         layout_size
     };
     static constexpr const char* layout_source = R"(
 kernel void block_layout(global uint *out) {
     const uint layout[] = {RAYS_OFFSET, ESCAPED_OFFSET, EMITTED_OFFSET, DELTA_OFFSET, GLOSSY_OFFSET, DIFFUSE_OFFSET,
-                           SHADOW_OFFSET, RADIANCE_OFFSET, RADIANCE_STRIDE, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
+                           SHADOW_OFFSET, RADIANCE_OFFSET, QUEUE_STRIDE, PATH_T, PATH_HIT, PATH_U, PATH_V,
                            PATH_DIRECTION, PATH_THROUGHPUT, PATH_PDF, PATH_ID, PATH_DEPTH, PATH_ETA, PATH_RECEIVER, PATH_ORIGIN,
-                           PATH_INSTANCE, SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM};
+                           PATH_INSTANCE, SHADOW_T, SHADOW_DIRECTION, SHADOW_CONTRIBUTION, SHADOW_ID, SHADOW_ORIGIN, SHADOW_FROM, SHADOW_TO};
     for (uint i = 0u; i < sizeof layout / sizeof layout[0]; i++) out[i] = layout[i];
 }
 )";

@@ -11,10 +11,10 @@ const char* const source = R"(
 #define RAY(k) rays[(size_t)(k) * count + i]
 
 #if HAS_FEW_TRIANGLES
-#include "shapes/few_triangles.h"
+#include "shapes/few_facets.h"
 #define LANE_RAY(k) load(&RAY(k))
 #define LOOP_STEP LANES
-#define GEOMETRY FewTriangles geometry = {few_vertices, few_triangles, few_summary, few_corners}
+#define GEOMETRY FewTriangles geometry = {few_vertices, few_triangles, few_summary, few_facets, few_corners, few_numbers}
 #define TRACE_RAYS                                                                                             \
     Vec3 origin = vec3(LANE_RAY(0), LANE_RAY(1), LANE_RAY(2)), along = vec3(LANE_RAY(3), LANE_RAY(4), LANE_RAY(5))
 #else
@@ -33,7 +33,8 @@ const char* const source = R"(
 #define PARAMETERS                                                                                             \
     global const uchar *nodes, global const uchar *blocks, global const float *few_vertices,                   \
         global const struct FewTriangle *few_triangles, global const struct FewSummary *few_summary,           \
-        global const float *few_corners, global const float *rays, uint count, global float *hits
+        global const struct FewFacet *few_facets, global const float *few_corners, global const uint *few_numbers, \
+        global const float *rays, uint count, global float *hits
 #define FOR_RAYS                                                                                               \
     GEOMETRY;                                                                                                  \
     uint first = (uint)get_global_id(0) * 512u, last = min(first + 512u, count);                               \
@@ -59,7 +60,7 @@ kernel void any_hits(PARAMETERS) {
     FOR_RAYS {
         TRACE_RAYS;
 #if HAS_FEW_TRIANGLES
-        Int blocked = any_of_few(geometry, origin, along, LANE_RAY(6), as_UInt(LANE_RAY(7)), TRUE_MASK);
+        Int blocked = any_of_few(geometry, origin, along, LANE_RAY(6), as_UInt(LANE_RAY(7)), (UInt)HIT_NONE, TRUE_MASK);
         store(hits + i, SELECT(blocked, (Float)-INFINITY, LANE_RAY(6)));
 #else
         uint blocked = trace_any_group(geometry, &group, lane_bits(TRUE_MASK));
@@ -75,7 +76,9 @@ void set_mesh(Kernel& kernel, const MeshBuffers& mesh) {
     kernel.set(2, mesh.few_vertices.memory());
     kernel.set(3, mesh.few_triangles.memory());
     kernel.set(4, mesh.few_summary.memory());
-    kernel.set(5, mesh.few_corners.memory());
+    kernel.set(5, mesh.few_facets.memory());
+    kernel.set(6, mesh.few_corners.memory());
+    kernel.set(7, mesh.few_numbers.memory());
 }
 
 }  // namespace
@@ -92,9 +95,9 @@ OurKernels::OurKernels(const Device& device, const MeshBuffers& mesh, const std:
 
 double OurKernels::trace(bool any_hit, std::size_t count, const Buffer& rays, const Buffer& hits) {
     Kernel& kernel = any_hit ? any_ : closest_;
-    kernel.set(6, rays.memory());
-    kernel.set(7, static_cast<cl_uint>(count));
-    kernel.set(8, hits.memory());
+    kernel.set(8, rays.memory());
+    kernel.set(9, static_cast<cl_uint>(count));
+    kernel.set(10, hits.memory());
     const ClEvent event = kernel.launch(device_, (count + rays_per_item - 1) / rays_per_item);
     device_.finish();
     return event_seconds(event);

@@ -18,11 +18,13 @@ struct MeshBuffers {
           few_vertices(Buffer::of<float>(device, few ? set.vertices : std::vector<float>(3))),
           few_triangles(Buffer::of<FewTriangle>(device, few ? set.triangles : std::vector<FewTriangle>(1))),
           few_summary(Buffer::of<FewSummary>(device, std::vector<FewSummary>{set.summary})),
-          few_corners(Buffer::of<float>(device, few ? set.corners : std::vector<float>(1))) {}
+          few_facets(Buffer::of<FewFacet>(device, few ? set.facets : std::vector<FewFacet>(1))),
+          few_corners(Buffer::of<float>(device, few ? set.corners : std::vector<float>(1))),
+          few_numbers(Buffer::of<std::uint32_t>(device, few ? set.numbers : std::vector<std::uint32_t>(1))) {}
 
     bool few;
     int walks;
-    Buffer nodes, blocks, few_vertices, few_triangles, few_summary, few_corners;
+    Buffer nodes, blocks, few_vertices, few_triangles, few_summary, few_facets, few_corners, few_numbers;
 };
 
 class OurKernels {

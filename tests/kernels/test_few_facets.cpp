@@ -1,0 +1,238 @@
+// Facets of small scenes: what they find is what the watertight test of all triangles finds, and they seldom have to ask it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "accel/few_triangles.h"
+#include "support/ray_sets.h"
+
+namespace wavelobe::test {
+namespace {
+
+const char* const source = R"(
+#include "shapes/few_facets.h"
+
+#define RAY(k) load(rays + (size_t)(k) * count + i)
+#define TRACED_PARAMETERS                                                                                                          \
+    global const float *vertices, global const struct FewTriangle *triangles, global const struct FewSummary *summary,           \
+        global const struct FewFacet *facets, global const float *corners, global const uint *numbers, global const float *rays, \
+        uint count
+#define TRACED                                                                     \
+    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers}; \
+    uint i = (uint)get_global_id(0) * LANES;                                       \
+    Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5))
+
+// By facets and by triangles, closest and any hit; whether facets were sure of both.
+kernel void trace_both(TRACED_PARAMETERS, global float *out) {
+    TRACED;
+    LaneRay ray = lane_ray(geometry, origin, direction, as_UInt(RAY(7)));
+    LaneHit by_facets = closest_triangle(geometry, &ray, RAY(6));
+    NearestTriangle nearest = closest_of_all(geometry, &ray, RAY(6));
+    LaneHit by_triangles = hit_of_triangle(geometry, &nearest, RAY(6));
+    Int any = any_triangle(geometry, &ray, RAY(6), as_UInt(RAY(8)), TRUE_MASK);
+    FacetRay facet_rays = facet_ray(geometry, &ray);
+    NearestFacet found = nearest_facet(geometry, &ray, &facet_rays, RAY(6));
+    const Float values[10] = {by_facets.t,        by_facets.u,    by_facets.v,    as_Float(by_facets.slot),
+                              by_triangles.t,     by_triangles.u, by_triangles.v, as_Float(by_triangles.slot),
+                              SELECT(any, ONE, ZERO), SELECT(doubts_that_matter(geometry, &facet_rays, &found), ONE, ZERO)};
+    for (uint k = 0; k < 10; k++) store(out + (size_t)k * count + i, values[k]);
+}
+)";
+
+struct FacetRayInput {
+    TestRay ray;
+    std::uint32_t to = HIT_NONE;
+};
+
+struct BothHits {
+    TestHit by_facets, by_triangles;
+    bool unsure = false;
+};
+
+std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<FacetRayInput>& rays) {
+    const std::size_t count = (rays.size() + 15) / 16 * 16;
+    std::vector<float> packed(9 * count, 0.0F), out(10 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const FacetRayInput& input = rays[std::min(i, rays.size() - 1)];
+        for (std::size_t k = 0; k < 3; ++k) {
+            packed[k * count + i] = input.ray.origin[static_cast<glm::length_t>(k)];
+            packed[(3 + k) * count + i] = input.ray.direction[static_cast<glm::length_t>(k)];
+        }
+        packed[6 * count + i] = input.ray.limit;
+        std::memcpy(&packed[7 * count + i], &input.ray.from, sizeof(float));
+        std::memcpy(&packed[8 * count + i], &input.to, sizeof(float));
+    }
+    static Probe probe(source);
+    const std::vector<FewSummary> summary{few.summary};
+    const auto ray_count = static_cast<cl_uint>(count);
+    probe.run("trace_both", count / 16, few.vertices, few.triangles, summary, few.facets, few.corners, few.numbers, packed, ray_count, out);
+    std::vector<BothHits> hits(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const auto hit = [&](std::size_t k) {
+            TestHit h{out[k * count + i], out[(k + 1) * count + i], out[(k + 2) * count + i]};
+            std::memcpy(&h.slot, &out[(k + 3) * count + i], sizeof(float));
+            return h;
+        };
+        hits[i] = {hit(0), hit(4), out[9 * count + i] != 0.0F};
+        hits[i].by_facets.any = out[8 * count + i] != 0.0F ? 1 : 0;
+    }
+    return hits;
+}
+
+// A room with a turned block in it, `lift` above its floor: rectangles whose corners are rounded.
+Triangles furnished_room(float scale, const glm::vec3& offset, float lift) {
+    Triangles triangles = cube_mesh(1).triangles();
+    const float sine = std::sin(0.3F), cosine = std::cos(0.3F);
+    for (const TriangleVertices& t : cube_mesh(1).triangles()) {
+        TriangleVertices turned;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const glm::vec3 p = 0.3F * t[k];
+            turned[k] = {cosine * p.x - sine * p.z + 0.2F, p.y - 0.7F + lift, sine * p.x + cosine * p.z - 0.1F};
+        }
+        triangles.push_back(turned);
+    }
+    for (TriangleVertices& t : triangles) {
+        for (glm::vec3& v : t) v = scale * v + offset;
+    }
+    return triangles;
+}
+
+struct RoomScene {
+    explicit RoomScene(const Triangles& t) : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {}
+    Triangles triangles;
+    Bvh bvh;
+    FewTriangleSet few;
+};
+
+// As paths make them: from points of triangles, away from either side.
+std::vector<FacetRayInput> bounce_rays(const RoomScene& scene, std::size_t count, unsigned seed) {
+    Generator random(seed);
+    std::vector<FacetRayInput> rays;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto number = static_cast<std::uint32_t>(i % scene.triangles.size());
+        const TriangleVertices& t = scene.triangles[number];
+        float a = uniform(random, 0.0F, 1.0F), b = uniform(random, 0.0F, 1.0F);
+        if (a + b > 1.0F) a = 1.0F - a, b = 1.0F - b;
+        rays.push_back({{t[0] + a * (t[1] - t[0]) + b * (t[2] - t[0]), uniform_direction(random), std::numeric_limits<float>::infinity(), number}});
+    }
+    return rays;
+}
+
+struct Place {
+    const char* name;
+    float scale;
+    glm::vec3 offset;
+};
+
+void PrintTo(const Place& place, std::ostream* out) { *out << place.name; }
+
+class Facets : public testing::TestWithParam<Place> {
+protected:
+    Facets() : scene(furnished_room(GetParam().scale, GetParam().offset, 0.05F)) {}
+    RoomScene scene;
+};
+
+TEST_P(Facets, PairTheHalvesOfRectangles) {
+    EXPECT_EQ(scene.few.summary.facet_count, 12U);
+    EXPECT_EQ(scene.few.summary.parallelogram_count, 12U);
+    std::vector<int> parts(12);
+    for (const FewTriangle& t : scene.few.triangles) ++parts.at(t.facet);
+    EXPECT_EQ(parts, std::vector<int>(12, 2));
+}
+
+struct Differences {
+    std::size_t unsure = 0;
+    std::size_t elsewhere = 0;  // another triangle is hit
+};
+
+// What facets and the watertight test find must be the same, but for rounding.
+Differences compare_hits(const std::vector<BothHits>& hits, float scale) {
+    Differences d;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+        const BothHits& h = hits[i];
+        EXPECT_EQ(h.by_facets.slot == HIT_NONE, h.by_triangles.slot == HIT_NONE) << "ray " << i;
+        EXPECT_EQ(h.by_facets.slot != HIT_NONE, h.by_facets.any != 0) << "ray " << i;
+        if (h.unsure) ++d.unsure;
+        if (h.by_facets.slot != h.by_triangles.slot) ++d.elsewhere;
+        if (h.by_facets.slot != h.by_triangles.slot || h.by_facets.slot == HIT_NONE) continue;
+        // Surfaces that graze the ray: 128 roundings over a cosine of 0.01.
+        EXPECT_NEAR(h.by_facets.t, h.by_triangles.t, 2e-4F * scale) << "ray " << i;
+        EXPECT_NEAR(h.by_facets.u, h.by_triangles.u, 2e-4F) << "ray " << i;
+        EXPECT_NEAR(h.by_facets.v, h.by_triangles.v, 2e-4F) << "ray " << i;
+        if (testing::Test::HasFailure()) break;
+    }
+    return d;
+}
+
+TEST_P(Facets, FindWhatTheWatertightTestFinds) {
+    const Differences d = compare_hits(trace_both(scene.few, bounce_rays(scene, 200000, 1)), GetParam().scale);
+    EXPECT_LT(d.elsewhere, 20U) << "but on the line between the halves of a rectangle";
+    EXPECT_LT(d.unsure, 400U);
+    EXPECT_GT(d.unsure, 0U);
+}
+
+TEST_P(Facets, MayBeTrianglesLeftOver) {
+    Triangles holed = scene.triangles;
+    holed.erase(holed.begin() + 20);
+    holed.erase(holed.begin() + 3);
+    const RoomScene room(holed);
+    EXPECT_EQ(room.few.summary.facet_count, 12U);
+    EXPECT_EQ(room.few.summary.parallelogram_count, 10U);
+    const std::vector<BothHits> hits = trace_both(room.few, bounce_rays(room, 200000, 2));
+    EXPECT_LT(compare_hits(hits, GetParam().scale).elsewhere, 20U);
+    EXPECT_TRUE(std::ranges::any_of(hits, [](const BothHits& h) { return h.by_facets.slot == HIT_NONE; }));
+}
+
+// A side of the block lies in the floor: rays that leave either meet the other or not by a rounding.
+TEST_P(Facets, AskTheWatertightTestWhereTheyCoincide) {
+    const RoomScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
+    const Differences d = compare_hits(trace_both(room.few, bounce_rays(room, 200000, 3)), GetParam().scale);
+    EXPECT_GT(d.unsure, 10000U);
+    EXPECT_LT(d.elsewhere, 20U);
+}
+
+// Up to a point of a triangle, to the last bit or beyond it by some.
+TEST_P(Facets, WhatARayIsAimedAtIsNotInItsWay) {
+    Generator random(4);
+    std::vector<FacetRayInput> rays = bounce_rays(scene, 100000, 5);
+    std::vector<FacetRayInput> targets = bounce_rays(scene, 100000, 6);
+    std::ranges::shuffle(targets, random);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        TestRay& ray = rays[i].ray;
+        const glm::vec3 way = targets[i].ray.origin - ray.origin;
+        ray.direction = glm::normalize(way);
+        ray.limit = glm::length(way) * (1.0F + 1e-6F * static_cast<float>(i % 3));
+        rays[i].to = targets[i].ray.from;
+    }
+    const std::vector<BothHits> hits = trace_both(scene.few, rays);
+    std::size_t blocked = 0, differ = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        // Within a rectangle rays that leave one half may meet the other by a rounding.
+        if (scene.few.numbers[rays[i].ray.from] == scene.few.numbers[rays[i].to]) continue;
+        const glm::vec3 target = targets[i].ray.origin;
+        const bool before = hits[i].by_triangles.t < 0.999F * glm::length(target - rays[i].ray.origin);
+        blocked += before ? 1 : 0;
+        differ += before != (hits[i].by_facets.any != 0) ? 1 : 0;
+    }
+    EXPECT_GT(blocked, rays.size() / 20);
+    EXPECT_LT(blocked, rays.size() * 19 / 20);
+    EXPECT_LT(differ, rays.size() / 1000) << "but what lies just before its target";
+}
+
+TEST(FacetsOf, TrianglesThatAreNoParallelogram) {
+    const Triangles trapezoid{{glm::vec3{0, 0, 0}, {2, 0, 0}, {1, 1, 0}}, {glm::vec3{0, 0, 0}, {1, 1, 0}, {0.5F, 1, 0}}};
+    const Triangles bent{{glm::vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {glm::vec3{0, 0, 0}, {1, 1, 0}, {0, 1, 1e-4F}}};
+    for (const Triangles& triangles : {trapezoid, bent}) {
+        const RoomScene scene(triangles);
+        EXPECT_EQ(scene.few.summary.facet_count, 2U);
+        EXPECT_EQ(scene.few.summary.parallelogram_count, 0U);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Facets,
+                         testing::Values(Place{"unit", 1.0F, {}}, Place{"tiny_scale", 1e-6F, {}}, Place{"huge_scale", 1e6F, {}}, Place{"aside", 1.0F, {3.0F, -5.0F, 2.0F}}),
+                         [](const auto& place) { return place.param.name; });
+
+}  // namespace
+}  // namespace wavelobe::test
