@@ -131,7 +131,6 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned axis, float po
 class Encoder {
 public:
     explicit Encoder(const Source& source) : source_(source) {}
-
     Bvh take() { return std::move(bvh_); }
 
     void encode_root(const BuildNode* root) {
@@ -313,7 +312,7 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
         encoder.encode_root(nullptr);
         return encoder.take();
     }
-    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : std::string();
+    const std::string config = threads > 0 ? "threads=" + std::to_string(threads) : "";
     const std::unique_ptr<RTCDeviceTy, ReleaseDevice> device(rtcNewDevice(config.c_str()));
     if (!device) throw std::runtime_error("Embree's builder could not be started");
     Bvh bvh = build_once(device.get(), source, analytic_bounds, both ? BvhQuality::fast : quality);
@@ -321,6 +320,7 @@ Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bound
         Bvh split = build_once(device.get(), source, analytic_bounds, BvhQuality::split);
         if (expected_steps(split) < expected_steps(bvh)) bvh = std::move(split);
     }
+    order_children(bvh);
     bvh.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return bvh;
 }

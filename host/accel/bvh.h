@@ -50,6 +50,10 @@ struct BuildStopped : std::runtime_error {
 Bvh build_bvh(std::span<const TriangleVertices> triangles, std::span<const Bounds> analytic_bounds, BvhQuality quality,
               int threads, std::span<const Bounds> instance_bounds = {}, const BuildProgress& progress = {});
 
+// Puts the children of each node in the order of their boxes' areas: any-hit traversal, which does not sort, visits the last one first,
+// and a ray is likeliest to be blocked in the largest.
+void order_children(Bvh& bvh);
+
 // How many rays without anything in common are best traced in turn (kernels/shapes/walks.h): several through a hierarchy that
 // does not stay in the caches, else one.
 int walks_in_turn(const Bvh& bvh);

@@ -142,7 +142,13 @@ INLINE ChildFloats child_floats(float8 v) {
 }
 
 // ---- walks -----------------------------------------------------------------------------------------------------
-// All lanes take a step before any takes the next: what a step waits for, the others' steps fill.
+// All lanes take a step before any takes the next: what a step has asked for comes while the others take theirs.
+
+#define CACHE_LINE 64u
+
+INLINE void fetch_light_node(global const struct LightNode *node) {
+    for (uint byte = 0u; byte < sizeof(struct LightNode); byte += CACHE_LINE) fetch_line((ulong)node + byte);
+}
 
 typedef struct {
     Receivers receivers;
@@ -169,7 +175,9 @@ INLINE uint walk_down(global const struct LightNode *tree, LightWalks *w, uint i
     w->probability.value[i] = after;
     uint child = node->child[chosen];
     w->child.value[i] = child;
-    return shines & !(child & LIGHT_LEAF);
+    uint goes_on = shines & !(child & LIGHT_LEAF);
+    if (goes_on) fetch_light_node(tree + child);
+    return goes_on;
 }
 
 // In the wanted lanes the light that `u` leads to, and the probability of getting there: zero where no light shines.
@@ -209,8 +217,9 @@ INLINE Float light_tree_probability(global const struct LightNode *tree, Receive
             POP_LOWEST_BIT(left, i);
             global const struct LightNode *node = tree + place.value[i] / LIGHT_CHILDREN;
             steps[level].value[i] = child_probability(node, &receivers, i, place.value[i] % LIGHT_CHILDREN);
-            place.value[i] = node->place;
-            climbing ^= (uint)(node->place == LIGHT_ROOT) << i;
+            uint up = place.value[i] = node->place;
+            if (up != LIGHT_ROOT) fetch_light_node(tree + up / LIGHT_CHILDREN);
+            climbing ^= (uint)(up == LIGHT_ROOT) << i;
         } while (left);
     }
     Float probability = ONE;

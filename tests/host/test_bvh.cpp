@@ -282,6 +282,19 @@ TEST(FewTriangles, AreNoneOfLargeScenesAndOfManyOtherShapes) {
     EXPECT_TRUE(few(3).triangles.empty());
 }
 
+TEST_P(Hierarchy, HasTheLargestChildLast) {
+    const Bvh bvh = build_bvh(triangle_soup(3000, 0.1F, 1.0F, {}, 22), {}, GetParam(), 1);
+    for (const BvhNode& node : bvh.nodes) {
+        double before = 0.0;
+        for (unsigned i = 0; i < BVH_WIDTH && node.child[i] != BVH_EMPTY; ++i) {
+            const auto extent = [&](unsigned axis) { return static_cast<double>(node.bounds[2 * axis + 1][i] - node.bounds[2 * axis][i]); };
+            const double area = extent(0) * extent(1) + extent(1) * extent(2) + extent(2) * extent(0);
+            EXPECT_GE(area, before * (1.0 - 1e-12));
+            before = area;
+        }
+    }
+}
+
 TEST_P(Hierarchy, TellsHowFarItIs) {
     const Triangles triangles = triangle_soup(200000, 0.01F, 1.0F, {}, 3);
     std::vector<double> shares;

@@ -80,24 +80,6 @@ std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<Fa
     return hits;
 }
 
-// A room with a turned block in it, `lift` above its floor: rectangles whose corners are rounded.
-Triangles furnished_room(float scale, const glm::vec3& offset, float lift) {
-    Triangles triangles = cube_mesh(1).triangles();
-    const float sine = std::sin(0.3F), cosine = std::cos(0.3F);
-    for (const TriangleVertices& t : cube_mesh(1).triangles()) {
-        TriangleVertices turned;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const glm::vec3 p = 0.3F * t[k];
-            turned[k] = {cosine * p.x - sine * p.z + 0.2F, p.y - 0.7F + lift, sine * p.x + cosine * p.z - 0.1F};
-        }
-        triangles.push_back(turned);
-    }
-    for (TriangleVertices& t : triangles) {
-        for (glm::vec3& v : t) v = scale * v + offset;
-    }
-    return triangles;
-}
-
 struct RoomScene {
     explicit RoomScene(const Triangles& t) : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {}
     Triangles triangles;

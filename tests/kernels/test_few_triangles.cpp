@@ -1,10 +1,9 @@
 // LANES rays against every triangle of a small scene: the same demands as on the hierarchy.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <numeric>
 
-#include "accel/few_triangles.h"
+#include "support/few_probe.h"
 #include "support/ray_sets.h"
 
 namespace wavelobe::test {
@@ -12,30 +11,6 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-// One work-item a group of 16 rays, at any width.
-const char* const source = R"(
-#include "shapes/few_facets.h"
-
-#define RAY(k) load(rays + (size_t)(k) * count + i)
-
-kernel void trace(global const float *vertices, global const struct FewTriangle *triangles,
-                  global const struct FewSummary *summary, global const struct FewFacet *facets, global const float *corners,
-                  global const uint *numbers, global const float *rays, uint count, global float *hits) {
-    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers};
-    uint first = (uint)get_global_id(0) * 16u;
-    for (uint i = first; i < first + 16u; i += LANES) {
-        Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
-        LaneHit hit = closest_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)));
-        Int any = any_of_few(geometry, origin, direction, RAY(6), as_UInt(RAY(7)), (UInt)HIT_NONE, TRUE_MASK);
-        store(hits + i, hit.t);
-        store(hits + count + i, hit.u);
-        store(hits + 2 * count + i, hit.v);
-        store(hits + 3 * count + i, as_Float(hit.slot));
-        store(hits + 4 * count + i, as_Float(SELECT(any, (UInt)1u, (UInt)0u)));
-    }
-}
-)";
 
 // How many facets are left for each group of rays: all of them where the rays are no pencil.
 const char* const pencil_source = R"(
@@ -58,47 +33,6 @@ kernel void count_left(global const struct FewSummary *summary, global const flo
     }
 }
 )";
-
-// Eight arrays of `count`, a multiple of 16: origins, directions, limits and what is left.
-std::vector<float> packed_rays(const std::vector<TestRay>& rays, std::size_t count) {
-    std::vector<float> packed(8 * count, 0.0F);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            packed[k * count + i] = rays[i].origin[static_cast<glm::length_t>(k)];
-            packed[(3 + k) * count + i] = rays[i].direction[static_cast<glm::length_t>(k)];
-        }
-        packed[6 * count + i] = rays[i].limit;
-        std::memcpy(&packed[7 * count + i], &rays[i].from, sizeof(float));
-    }
-    return packed;
-}
-
-class FewProbe {
-public:
-    explicit FewProbe(int lanes = 16, bool portable = false)
-        : probe_(source, {.lanes = lanes, .defines = portable ? "-DWAVELOBE_PORTABLE" : ""}) {}
-
-    std::vector<TestHit> trace(const FewTriangleSet& few, const std::vector<TestRay>& rays) {
-        const std::size_t count = (rays.size() + 15) / 16 * 16;
-        const std::vector<float> packed = packed_rays(rays, count);
-        std::vector<float> hits(5 * count);
-        const auto ray_count = static_cast<cl_uint>(count);
-        const std::vector<FewSummary> summary{few.summary};
-        probe_.run("trace", count / 16, few.vertices, few.triangles, summary, few.facets, few.corners, few.numbers, packed, ray_count, hits);
-        std::vector<TestHit> out(rays.size());
-        for (std::size_t i = 0; i < rays.size(); ++i) {
-            out[i].t = hits[i];
-            out[i].u = hits[count + i];
-            out[i].v = hits[2 * count + i];
-            std::memcpy(&out[i].slot, &hits[3 * count + i], sizeof(float));
-            std::memcpy(&out[i].any, &hits[4 * count + i], sizeof(float));
-        }
-        return out;
-    }
-
-private:
-    Probe probe_;
-};
 
 FewProbe& probe() {
     static FewProbe instance;
@@ -178,6 +112,17 @@ Triangles soup_with_needles(unsigned seed, float scale, const glm::vec3& offset)
         triangles[i][2] = glm::mix(glm::mix(triangles[i][0], triangles[i][1], 0.3F), triangles[i][2], std::ldexp(1.0F, -static_cast<int>(i) / 2));
     }
     return triangles;
+}
+
+TEST(FewTriangles, PencilsInARoomOfRectanglesMeetWhatSingleRaysMeet) {
+    for (const float spread : {1e-3F, 0.03F, 0.3F}) {
+        const SmallScene scene(furnished_room(1.0F, {}, 0.0F));
+        const std::vector<TestRay> rays = pencils(scene.triangles, 4000, spread, 13);
+        const std::vector<TestHit> hits = FewProbe(1).trace(scene.few, rays);
+        EXPECT_EQ(probe().trace(scene.few, rays), hits) << spread;
+        EXPECT_EQ(FewProbe(8).trace(scene.few, rays), hits) << spread;
+        EXPECT_EQ(FewProbe(16, true).trace(scene.few, rays), hits) << spread << ", portable twins";
+    }
 }
 
 class FewPencils : public testing::TestWithParam<Soup> {};

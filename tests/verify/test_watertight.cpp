@@ -2,6 +2,7 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include "support/few_probe.h"
 #include "support/ray_sets.h"
 #include "support/verification.h"
 
@@ -103,6 +104,33 @@ TEST_P(ClosedMeshes, LetNoRayPass) {
     }
 }
 
+// Without a hierarchy, by facets.
+TEST_P(ClosedMeshes, LetNoRayPassWhereTheyAreSmall) {
+    const Placement& p = GetParam();
+    for (Shape& shape : std::vector<Shape>{{"sphere of 32", sphere_mesh(1, 1.0F, {}), glm::vec3(0.4F)}, {"cube of 48", cube_mesh(2), glm::vec3(0.9F)}}) {
+        const glm::vec3 center{p.scale * p.offset};
+        for (glm::vec3& v : shape.mesh.vertices) v = v * p.scale + center;
+        const Bvh bvh = build_bvh(shape.mesh.triangles(), {}, BvhQuality::split, 1);
+        const FewTriangleSet few = find_few_triangles(bvh);
+        FewProbe probe;
+        Claim claim("Numerical stability", fmt::format("{}, {}, no hierarchy: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
+                    "rays");
+        Generator random(2);
+        std::size_t passed = 0;
+        const std::size_t batches = quick_or_full<std::size_t>(1, 40);
+        for (std::size_t k = 0; k < batches; ++k) {
+            std::vector<TestRay> rays;
+            const glm::vec3 half = p.scale * shape.inside;
+            while (rays.size() < batch / 2) rays.push_back(ray_from_inside(shape.mesh, center, half, random));
+            while (rays.size() < batch) add_bundle(rays, shape.mesh, center, half, random);
+            for (const TestHit& hit : probe.trace(few, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
+        }
+        claim.observe(static_cast<double>(passed));
+        claim.count(batch * batches);
+        claim.at_most(0.0);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ClosedMeshes,
                          testing::Values(Placement{"unit", 1.0F, 0.0F}, Placement{"tiny", 1e-6F, 0.0F}, Placement{"huge", 1e6F, 0.0F},
                                          Placement{"away", 1.0F, 1e5F}),
@@ -192,6 +220,33 @@ TEST(RandomRays, HitWhatTheyHitInEmbree) {
             }
         }
         claim.observe(static_cast<double>(wrong), [&] { return fmt::format("{}{} differ", first, unlike); });
+        claim.count(batch * batches);
+        claim.at_most(0.0);
+    }
+}
+
+// Without a hierarchy; against double precision alone.
+TEST(RandomRays, HitWhatDoublePrecisionAllowsInARoom) {
+    for (const float scale : {1.0F, 1e-6F, 1e6F}) {
+        const Triangles room = furnished_room(scale, {}, 0.05F);
+        const Bvh bvh = build_bvh(room, {}, BvhQuality::split, 1);
+        const FewTriangleSet few = find_few_triangles(bvh);
+        FewProbe ours;
+        Claim claim("Numerical stability", fmt::format("room of 12 rectangles, scale {}: random rays that hit wrongly", scale), "rays");
+        std::size_t wrong = 0;
+        std::string first;
+        const std::size_t batches = quick_or_full<std::size_t>(1, 100);
+        for (std::size_t k = 0; k < batches; ++k) {
+            const std::vector<TestRay> rays = random_rays(batch, scale, {}, static_cast<unsigned>(k));
+            const std::vector<TestHit> hits = ours.trace(few, rays);
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const std::string fault = fault_of_hit(rays[i], hits[i], bvh, room, Projection::rotation);
+                if (fault.empty()) continue;
+                ++wrong;
+                if (first.empty()) first = fmt::format("batch {} ray {}: {}", k, i, fault);
+            }
+        }
+        claim.observe(static_cast<double>(wrong), [&] { return first; });
         claim.count(batch * batches);
         claim.at_most(0.0);
     }
