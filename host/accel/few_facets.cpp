@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::array<std::size_t, 3> all_corners = {0, 1, 2};
 
+// How far corners may be off a parallelogram or a plane: a few roundings (kernels/shapes/few_facets.h counts on it).
+double tolerance(const FewTriangleSet& few) { return 0x1p-22 * static_cast<double>(few.summary.radius); }
+
 glm::dvec3 vertex(const FewTriangleSet& few, std::uint32_t i) {
     const float* v = &few.vertices[std::size_t{3} * i];
     return {v[0], v[1], v[2]};
@@ -41,7 +44,6 @@ struct Pair {
 
 // The two triangles as halves of a parallelogram, corners of which may be off by a few roundings.
 std::optional<Pair> parallelogram(const FewTriangleSet& few, std::size_t first, std::size_t second) {
-    const double tolerance = 0x1p-22 * static_cast<double>(few.summary.radius);
     for (const std::size_t i : all_corners) {
         const Half near = half_with_apex(few, first, i);
         for (const std::size_t k : all_corners) {
@@ -52,7 +54,7 @@ std::optional<Pair> parallelogram(const FewTriangleSet& few, std::size_t first, 
             far.b = near.c;
             far.c = near.b;
             const glm::dvec3 gap = vertex(few, near.apex) + vertex(few, far.apex) - vertex(few, near.b) - vertex(few, near.c);
-            if (glm::length(gap) <= tolerance) return Pair{near, far};
+            if (glm::length(gap) <= tolerance(few)) return Pair{near, far};
         }
     }
     return std::nullopt;
@@ -95,6 +97,13 @@ void add_facet(FewTriangleSet& few, const Half& near, const Half* far) {
     f.part[0] = part_of(few, near);
     f.part[1] = far != nullptr ? part_of(few, *far) : f.part[0];
     const auto number = static_cast<std::uint32_t>(few.facets.size());
+    const auto holds_all = [&](const FewFacet& other) {
+        const glm::dvec3 across(other.normal[0], other.normal[1], other.normal[2]);
+        return std::ranges::all_of(std::array{a, b, c, d}, [&](const glm::dvec3& p) {
+            return std::abs(glm::dot(across, p - center) - static_cast<double>(other.offset)) <= tolerance(few);
+        });
+    };
+    f.plane = static_cast<std::uint32_t>(std::ranges::find_if(few.facets, holds_all) - few.facets.begin());
     std::size_t row = 0;
     for (const glm::dvec3& p : {a, b, c, d, 4.0 * area}) {
         for (glm::length_t k = 0; k < 3; ++k) few.corners[row++ * FEW_TRIANGLES_MAX + number] = static_cast<float>(p[k]);

@@ -70,6 +70,8 @@ FewTriangleSet find_few_triangles(const Bvh& bvh, std::span<const Bounds> analyt
             few.triangles.push_back(triangle);
         }
     }
+    // Of two at the same distance the one that comes first is hit: that shall not depend on the hierarchy.
+    std::ranges::sort(few.triangles, {}, [](const FewTriangle& t) { return t.primitive & ~PRIMITIVE_MASKED; });
     if (few.triangles.size() > FEW_TRIANGLES_MAX || known.size() > FEW_VERTICES_MAX) return {};
     if (few.triangles.empty()) return {};
     add_analytics(few, bvh, analytic_bounds);

@@ -5,7 +5,7 @@
 // What is too close. Let u be half an ulp of one, q the distance from the ray's origin to the farthest point of the set, r the
 // reciprocal of the product of direction and normal. Products of a plane's normal with the origin and with the direction are off by
 // 11 u q and 6 u: three roundings of sums no larger than 1.8 q, of the normal, the offset and the origin one each, and corners off the
-// plane by FACET_TOLERANCE. If the ray does meet the facet, at a distance of no more than q, what is computed for that distance is off by
+// plane by four at the most. If the ray does meet the facet, at a distance of no more than q, what is computed for that distance is off by
 // (11 + 6) u q |r| + 2 u q; how far inside an edge the point lies, by as much and 18 u q, for the point's own rounding, the product with the row of
 // u or v, and its data. So beyond 40 u q |r| a no is right. And so is a yes: it says that the point is inside by more than that, so that
 // |r| is less than 1 / 40 u and the product that r stands for is not of the wrong sign. The watertight test may decide otherwise within
@@ -174,14 +174,17 @@ INLINE LaneHit closest_if_unsure(FewTriangles g, const LaneRay *ray, const Facet
     return h;
 }
 
-// Lanes that are unsure of a facet which is not beyond the nearest one: what was too close to call may lie behind what was found later.
+// Lanes that are unsure of a facet which is not beyond the nearest one. What was too close to call may lie behind what was found later, or in
+// one plane with it: then neither is nearer.
 INLINE Int doubts_that_matter(FewTriangles g, const FacetRay *r, const NearestFacet *nearest) {
     NearestFacet n = *nearest;
     n.unsure = keep_mask(!TRUE_MASK);
+    Int found = n.facet != (UInt)FACET_NONE;
+    UInt plane = SELECT(found, GATHER_UINT_FIELD(g.facets, FewFacet, SELECT(found, n.facet, (UInt)0u), plane), (UInt)FACET_NONE);
     for (uint i = 0u; i < g.summary->facet_count; i++) {
         FacetPoint p = meet_facet(g, r, i);
         Float within = LESSER(LESSER(p.inside, p.t), n.t - p.t);
-        n.unsure |= keep_mask(!(within < -(p.error + n.error)) & (r->from != (UInt)i) & (n.facet != (UInt)i));
+        n.unsure |= keep_mask(!(within < -(p.error + n.error)) & (r->from != (UInt)i) & (plane != (UInt)g.facets[i].plane));
     }
     return kept_mask(nearest->unsure & n.unsure);
 }

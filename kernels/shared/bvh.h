@@ -54,8 +54,9 @@ struct FewFacet {
     float u[4], v[4];                   // u is the product of the first three with a point, plus the fourth
     float height_u, height_v, height_w; // what u, v and u + v are to be multiplied with to be distances
     Uint32 part[2];                     // triangles on either side of u + v = 0: FACET_PART
+    Uint32 plane;                       // the first facet that lies in the same one
 };
-WAVELOBE_CHECK_SIZE(FewFacet, 68);
+WAVELOBE_CHECK_SIZE(FewFacet, 72);
 
 // A slot, and what the second and third corner of its triangle are: 0: the one across from u + v = 0; 1: where u, 2: where v is larger
 // than in the middle, seen from that one.

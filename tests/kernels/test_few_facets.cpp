@@ -137,9 +137,10 @@ Differences compare_hits(const std::vector<BothHits>& hits, float scale) {
         EXPECT_EQ(h.by_facets.slot != HIT_NONE, h.by_facets.any != 0) << "ray " << i;
         if (h.unsure) ++d.unsure;
         if (h.by_facets.slot != h.by_triangles.slot) ++d.elsewhere;
-        if (h.by_facets.slot != h.by_triangles.slot || h.by_facets.slot == HIT_NONE) continue;
+        if (h.by_facets.slot == HIT_NONE) continue;
         // Surfaces that graze the ray: 128 roundings over a cosine of 0.01.
         EXPECT_NEAR(h.by_facets.t, h.by_triangles.t, 2e-4F * scale) << "ray " << i;
+        if (h.by_facets.slot != h.by_triangles.slot) continue;
         EXPECT_NEAR(h.by_facets.u, h.by_triangles.u, 2e-4F) << "ray " << i;
         EXPECT_NEAR(h.by_facets.v, h.by_triangles.v, 2e-4F) << "ray " << i;
         if (testing::Test::HasFailure()) break;
@@ -171,7 +172,29 @@ TEST_P(Facets, AskTheWatertightTestWhereTheyCoincide) {
     const RoomScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
     const Differences d = compare_hits(trace_both(room.few, bounce_rays(room, 200000, 3)), GetParam().scale);
     EXPECT_GT(d.unsure, 10000U);
-    EXPECT_LT(d.elsewhere, 20U);
+}
+
+// Seen from outside the floor and the side of the block in it are equally near: whichever is found will do.
+TEST_P(Facets, NeedNotAskWhichOfTwoInOnePlaneIsNearer) {
+    const RoomScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
+    std::vector<std::uint32_t> planes;
+    for (const FewFacet& facet : room.few.facets) planes.push_back(facet.plane);
+    std::ranges::sort(planes);
+    EXPECT_EQ(std::ranges::unique(planes).begin() - planes.begin(), 11);
+    Generator random(7);
+    std::vector<FacetRayInput> rays;
+    for (int i = 0; i < 100000; ++i) {
+        const glm::vec3 start(0.4F * uniform_in_cube(random, 1.0F).x, -2.0F, 0.4F * uniform_in_cube(random, 1.0F).z);
+        const glm::vec3 way(uniform(random, -0.2F, 0.2F), 1.0F, uniform(random, -0.2F, 0.2F));
+        rays.push_back({{start * GetParam().scale + GetParam().offset, glm::normalize(way)}});
+    }
+    std::size_t unsure = 0;
+    for (const BothHits& h : trace_both(room.few, rays)) {
+        ASSERT_NE(h.by_facets.slot, HIT_NONE);
+        ASSERT_NEAR(h.by_facets.t, h.by_triangles.t, 1e-5F * GetParam().scale);
+        unsure += h.unsure ? 1 : 0;
+    }
+    EXPECT_LT(unsure, 200U);
 }
 
 // Up to a point of a triangle, to the last bit or beyond it by some.
