@@ -72,25 +72,21 @@ std::uint64_t DeviceBuffers::total_bytes() const {
 }
 
 void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few) {
-    if (!scene.features.few_triangles) add("bvh_nodes", bvh.nodes);
-    add("few_vertices", few.vertices);
-    add("few_triangles", few.triangles);
-    if (scene.features.facets()) {
-        add("few_facets", few.facets);
-        add("few_corners", few.corners);
-        add("few_numbers", few.numbers);
+    if (scene.features.few_triangles) {
+        add_few(scene, bvh, few);
+    } else {
+        add("bvh_nodes", bvh.nodes);
+        add("analytic_order", bvh.analytic_order);
     }
-    add("few_analytics", few.analytics);
     add("triangle_blocks", bvh.blocks);
-    if (!scene.features.few_triangles) add("analytic_order", bvh.analytic_order);
     // An empty scene still has kernels that name these.
     add("primitive_shapes", scene.primitive_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.primitive_shapes);
     add("shapes", scene.shapes.empty() ? std::vector<DeviceShape>(1) : scene.shapes);
     add("materials", scene.materials.empty() ? std::vector<DeviceMaterial>(1) : scene.materials);
     add("opacities", scene.opacities);
-    add("normals", scene.normals);
-    add("uvs", scene.uvs);
-    add("colors", scene.colors);
+    add_rows("normals", scene.normals);
+    add_rows("uvs", scene.uvs);
+    add_rows("colors", scene.colors);
     add("analytics", scene.analytics);
     add("instances", scene.instances);
     add("textures", scene.textures);
@@ -113,6 +109,30 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
         add("layer_shapes", scene.layer_shapes.empty() ? std::vector<std::uint32_t>(1) : scene.layer_shapes);
     }
     if (scene.features.moments) add_zeros<double>("moment_film", pixels * MOMENT_CHANNELS);
+}
+
+void DeviceBuffers::add_rows(const std::string& name, std::span<const float> values) {
+    constexpr std::size_t read_at_once = 16;
+    if (values.empty()) return;
+    Buffer buffer(device_, (values.size() + read_at_once) * sizeof(float));
+    std::ranges::copy(values, buffer.view<float>().begin());
+    insert(name, std::move(buffer));
+}
+
+void DeviceBuffers::add_few(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few) {
+    add("few_vertices", few.vertices);
+    add("few_triangles", few.triangles);
+    add("few_analytics", few.analytics);
+    if (scene.features.facets()) {
+        add("few_facets", few.facets);
+        add("few_corners", few.corners);
+        add("few_numbers", few.numbers);
+    }
+    std::vector<float> slots(bvh.blocks.size() * BVH_WIDTH * FEW_SLOT_WORDS);
+    for (std::size_t slot = 0; slot < bvh.blocks.size() * BVH_WIDTH; ++slot) {
+        for (std::size_t row = 0; row < 9; ++row) slots[slot * FEW_SLOT_WORDS + row] = bvh.blocks[slot / BVH_WIDTH].vertex[row][slot % BVH_WIDTH];
+    }
+    add("few_slots", slots);
 }
 
 void DeviceBuffers::add_caustics(const DeviceScene& scene) {

@@ -50,6 +50,9 @@ private:
     void add(const std::string& name, const std::vector<T>& values) {
         if (!values.empty()) insert(name, Buffer::of<T>(device_, values));
     }
+    // With room behind them for what is read at once (kernels/core/rows.h).
+    void add_rows(const std::string& name, std::span<const float> values);
+    void add_few(const DeviceScene& scene, const Bvh& bvh, const FewTriangleSet& few);
     void add_caustics(const DeviceScene& scene);
     void insert(const std::string& name, Buffer buffer);
 

@@ -12,9 +12,8 @@ typedef struct {
 
 // In the space of the triangle's vertices. Coordinates that do not span a plane give any two directions along the triangle.
 INLINE UvPartials triangle_partials(SurfaceView s, UInt slot, const Surface *surface) {
-    UInt word = block_word(slot);
-    Vec3 a = block_vertex(s, word, 0u);
-    Vec3 e1 = sub(block_vertex(s, word, 1u), a), e2 = sub(block_vertex(s, word, 2u), a);
+    Corners corners = triangle_corners(s, slot);
+    Vec3 e1 = sub(corners.b, corners.a), e2 = sub(corners.c, corners.a);
     UvPartials p = {e1, e2};
 #if HAS_UVS
     UInt first_uv = GATHER_UINT_FIELD(s.shapes, Shape, surface->shape, first_uv);

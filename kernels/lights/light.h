@@ -15,6 +15,7 @@
 #define WAVELOBE_LIGHTS_LIGHT_H
 
 #include "core/math.h"
+#include "core/rows.h"
 #include "core/vector.h"
 #include "core/rounding.h"
 #include "shared/lights.h"
@@ -58,5 +59,26 @@ typedef struct {
 #define light_vector(in, name)                                                                             \
     vec3(light_word(in, WORD_OFFSET(Light, name)), light_word(in, WORD_OFFSET(Light, name) + 1u), \
          light_word(in, WORD_OFFSET(Light, name) + 2u))
+
+// Where a triangle, parallelogram or rectangle lies.
+typedef struct {
+    Vec3 position, edge1, edge2, normal;
+    Float inverse_area;
+} PlanarLight;
+
+INLINE PlanarLight planar_light(LightInput in) {
+#if LIGHT_COUNT == 1 && !HAS_UNSAMPLED_EMITTERS
+    PlanarLight p = {light_vector(in, position), light_vector(in, edge1), light_vector(in, edge2), light_vector(in, normal),
+                     light_field(in, inverse_area)};
+#else
+    Rows r = gather_rows((global const float *)in.lights + WORD_OFFSET(Light, position), in.light * RECORD_WORDS(Light));
+#define PLANAR_FIELD(name) r.word[WORD_OFFSET(Light, name) - WORD_OFFSET(Light, position)]
+#define PLANAR_VECTOR(name) vec3(PLANAR_FIELD(name.x), PLANAR_FIELD(name.y), PLANAR_FIELD(name.z))
+    PlanarLight p = {PLANAR_VECTOR(position), PLANAR_VECTOR(edge1), PLANAR_VECTOR(edge2), PLANAR_VECTOR(normal), PLANAR_FIELD(inverse_area)};
+#undef PLANAR_VECTOR
+#undef PLANAR_FIELD
+#endif
+    return p;
+}
 
 #endif

@@ -25,13 +25,13 @@ INLINE Float sine_of_slope(Float x, Float z2) {
 }
 
 INLINE SphericalRectangle spherical_rectangle(LightInput in, Vec3 reference) {
-    Vec3 e1 = light_vector(in, edge1), e2 = light_vector(in, edge2);
-    Vec3 to_corner = sub(light_vector(in, position), reference);
+    PlanarLight l = planar_light(in);
+    Vec3 e1 = l.edge1, e2 = l.edge2, to_corner = sub(l.position, reference);
     Float width = sqrt(length_squared(e1)), height = sqrt(length_squared(e2));
     SphericalRectangle r;
     r.x0 = dot3(to_corner, e1) / width;
     r.y0 = dot3(to_corner, e2) / height;
-    r.z0 = -fabs(dot3(to_corner, light_vector(in, normal)));
+    r.z0 = -fabs(dot3(to_corner, l.normal));
     r.x1 = r.x0 + width;
     r.y1 = r.y0 + height;
     Float z2 = r.z0 * r.z0;

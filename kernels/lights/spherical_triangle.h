@@ -25,15 +25,15 @@ INLINE Vec3 unit_or_zero(Vec3 v, Float *length) {
 }
 
 INLINE SphericalTriangle spherical_triangle(LightInput in, Vec3 reference) {
-    Vec3 e1 = light_vector(in, edge1), e2 = light_vector(in, edge2);
-    Vec3 to_first = sub(light_vector(in, position), reference);
+    PlanarLight l = planar_light(in);
+    Vec3 e1 = l.edge1, e2 = l.edge2, to_first = sub(l.position, reference);
     Float la, lb, lc;
     SphericalTriangle t;
     t.a = unit_or_zero(to_first, &la);
     t.b = unit_or_zero(add(to_first, e1), &lb);
     t.c = unit_or_zero(add(to_first, e2), &lc);
     // By the edges themselves nothing cancels, however small it is seen.
-    Float height = fabs(dot3(to_first, light_vector(in, normal))), area = 1.0f / light_field(in, inverse_area);
+    Float height = fabs(dot3(to_first, l.normal)), area = 1.0f / l.inverse_area;
     t.volume = 2.0f * (height / la) * (area / lb) / lc;
     Float rest = 1.0f + dot3(t.a, t.b) + dot3(t.b, t.c) + dot3(t.c, t.a);
     t.solid_angle = 2.0f * lane_atan2(t.volume, rest);
@@ -73,8 +73,8 @@ INLINE Vec3 sample_spherical_triangle(SphericalTriangle t, Float u1, Float u2) {
 
 // Barycentric coordinates of where a direction meets the triangle, kept within it.
 INLINE Vec2 triangle_along(LightInput in, Vec3 reference, Vec3 direction) {
-    Vec3 e1 = light_vector(in, edge1), e2 = light_vector(in, edge2);
-    Vec3 from_first = sub(reference, light_vector(in, position));
+    PlanarLight l = planar_light(in);
+    Vec3 e1 = l.edge1, e2 = l.edge2, from_first = sub(reference, l.position);
     Vec3 p = cross3(direction, e2), q = cross3(from_first, e1);
     Float inverse = 1.0f / dot3(e1, p);
     Vec2 b = {LESSER(GREATER(dot3(from_first, p) * inverse, ZERO), ONE), GREATER(dot3(direction, q) * inverse, ZERO)};

@@ -7,11 +7,12 @@
 
 // The point position + b1 edge1 + b2 edge2 of a triangle or parallelogram.
 INLINE LightSample planar_light_sample(LightInput in, Vec3 reference, Float b1, Float b2, Float u, Float v) {
-    Vec3 p0 = light_vector(in, position), e1 = light_vector(in, edge1), e2 = light_vector(in, edge2);
+    PlanarLight l = planar_light(in);
+    Vec3 p0 = l.position, e1 = l.edge1, e2 = l.edge2;
     Vec3 point = scale_add(e1, b1, scale_add(e2, b2, p0));
     // Two products, two sums and the edges' own rounding: five roundings where nothing is fused.
     Vec3 magnitude = scale_add(absolute(e1), b1, scale_add(absolute(e2), b2, absolute(p0)));
-    return area_light_sample(in, reference, point, scale(magnitude, (Float)GAMMA(6)), light_vector(in, normal), u, v);
+    return area_light_sample(in, reference, point, scale(magnitude, (Float)GAMMA(6)), l.normal, u, v);
 }
 
 // Texture coordinates of that point from those of the corners, which are three of a triangle (of half a parallelogram).

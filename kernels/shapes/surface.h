@@ -4,6 +4,7 @@
 
 #include "core/block.h"
 #include "core/rounding.h"
+#include "core/rows.h"
 #include "shared/bvh.h"
 #include "shared/scene.h"
 #include "shared/materials.h"
@@ -85,10 +86,31 @@ INLINE UInt primitive_of_hit(SurfaceView s, UInt hit) {
 #endif
 }
 
+typedef struct {
+    Vec3 a, b, c;
+} Corners;
+
+// Nine words in a row.
+INLINE Corners gather_corners(global const float *p, UInt i) {
+    Rows r = gather_rows(p, i);
+    Corners t = {vec3(r.word[0], r.word[1], r.word[2]), vec3(r.word[3], r.word[4], r.word[5]), vec3(r.word[6], r.word[7], r.word[8])};
+    return t;
+}
+
+#if HAS_FEW_TRIANGLES
+INLINE Corners triangle_corners(SurfaceView s, UInt slot) { return gather_corners(s.few_slots, slot * FEW_SLOT_WORDS); }
+#else
 INLINE Vec3 block_vertex(SurfaceView s, UInt word, uint vertex) {
     global const float *row = s.triangle_blocks + vertex * 24u;
     return vec3(gather(row, word), gather(row + 8u, word), gather(row + 16u, word));
 }
+
+INLINE Corners triangle_corners(SurfaceView s, UInt slot) {
+    UInt word = block_word(slot);
+    Corners t = {block_vertex(s, word, 0u), block_vertex(s, word, 1u), block_vertex(s, word, 2u)};
+    return t;
+}
+#endif
 
 INLINE Vec3 interpolate(Vec3 a, Vec3 b, Vec3 c, Float wa, Float wb, Float wc) {
     return vec3(madd(a.x, wa, madd(b.x, wb, c.x * wc)), madd(a.y, wa, madd(b.y, wb, c.y * wc)),
@@ -109,7 +131,8 @@ INLINE Int has_tangents(SurfaceView s, UInt shape) {
 INLINE void load_tangent(SurfaceView s, UInt first, Float wa, Float wb, Float wc, Surface *out) {
     Int there = has_tangents(s, out->shape);
     UInt at = SELECT(there, first + (UInt)9u, (UInt)0u);
-    Vec3 t = interpolate(gather_vec3(s.normals, at), gather_vec3(s.normals + 3, at), gather_vec3(s.normals + 6, at), wa, wb, wc);
+    Corners corners = gather_corners(s.normals, at);
+    Vec3 t = interpolate(corners.a, corners.b, corners.c, wa, wb, wc);
     out->tangent = select3(there & (length_squared(t) > 0.0f), t, out->dp_du);
 }
 #else
@@ -118,8 +141,8 @@ INLINE void load_tangent(SurfaceView s, UInt first, Float wa, Float wb, Float wc
 #endif
 
 INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
-    UInt word = block_word(slot);
-    Vec3 a = block_vertex(s, word, 0u), b = block_vertex(s, word, 1u), c = block_vertex(s, word, 2u);
+    Corners corners = triangle_corners(s, slot);
+    Vec3 a = corners.a, b = corners.b, c = corners.c;
     Float wb = p->u, wc = p->v, wa = 1.0f - wb - wc;
     out->position = interpolate(a, b, c, wa, wb, wc);
     out->error = scale(interpolate(absolute(a), absolute(b), absolute(c), fabs(wa), fabs(wb), fabs(wc)), (Float)GAMMA(7));
@@ -137,14 +160,14 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     Int smooth = first_normal != (UInt)WAVELOBE_NONE;
     if (any_lane(smooth)) {
         UInt at = SELECT(smooth, first_normal + triangle * NORMAL_WORDS, (UInt)0u);
-        Vec3 na = gather_vec3(s.normals, at), nb = gather_vec3(s.normals + 3, at), nc = gather_vec3(s.normals + 6, at);
-        Vec3 shading = interpolate(na, nb, nc, wa, wb, wc);
+        Corners n = gather_corners(s.normals, at);
+        Vec3 shading = interpolate(n.a, n.b, n.c, wa, wb, wc);
         Float square = length_squared(shading);
         out->frame.n = select3(smooth & (square > 0.0f), scale(shading, 1.0f / sqrt(square)), out->normal);
 #if HAS_SMOOTH_TERMINATOR
-        add_corner_rise(&out->rise, out->position, a, na, SELECT(smooth, wa, ZERO));
-        add_corner_rise(&out->rise, out->position, b, nb, SELECT(smooth, wb, ZERO));
-        add_corner_rise(&out->rise, out->position, c, nc, SELECT(smooth, wc, ZERO));
+        add_corner_rise(&out->rise, out->position, a, n.a, SELECT(smooth, wa, ZERO));
+        add_corner_rise(&out->rise, out->position, b, n.b, SELECT(smooth, wb, ZERO));
+        add_corner_rise(&out->rise, out->position, c, n.c, SELECT(smooth, wc, ZERO));
         out->rise = rise_above(out->rise, out->normal, out->frame.n);
 #endif
     }
@@ -155,8 +178,8 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     out->color = vec3_all(ONE);
     if (any_lane(colored)) {
         UInt at = SELECT(colored, first_color + triangle * 9u, (UInt)0u);
-        Rgb color = interpolate(gather_vec3(s.colors, at), gather_vec3(s.colors + 3, at), gather_vec3(s.colors + 6, at),
-                                wa, wb, wc);
+        Corners of_corners = gather_corners(s.colors, at);
+        Rgb color = interpolate(of_corners.a, of_corners.b, of_corners.c, wa, wb, wc);
         out->color = select3(colored, color, out->color);
     }
 #endif

@@ -10,6 +10,9 @@
 // Kernels take SURFACE_PARAMETERS and write SURFACE_VIEW.
 typedef struct {
     global const float *triangle_blocks;  // TriangleBlock
+#if HAS_FEW_TRIANGLES
+    global const float *few_slots; // corners of the triangle in each slot, FEW_SLOT_WORDS a slot
+#endif
     global const uint *primitive_shapes;  // shape of each triangle, then of each analytic shape
     global const struct Shape *shapes;
     global const struct Material *materials;
@@ -31,6 +34,13 @@ typedef struct {
 #endif
 } SurfaceView;
 
+#if HAS_FEW_TRIANGLES
+#define FEW_SLOTS_PARAMETER , global const float *few_slots
+#define FEW_SLOTS_ARGUMENT , few_slots
+#else
+#define FEW_SLOTS_PARAMETER
+#define FEW_SLOTS_ARGUMENT
+#endif
 #if HAS_SMOOTH_NORMALS
 #define NORMALS_PARAMETER , global const float *normals
 #define NORMALS_ARGUMENT , normals
@@ -68,12 +78,12 @@ typedef struct {
 #endif
 
 #define SURFACE_PARAMETERS                                                                                  \
-    global const struct RenderParameters *parameters, global const float *triangle_blocks,                  \
+    global const struct RenderParameters *parameters, global const float *triangle_blocks FEW_SLOTS_PARAMETER, \
         global const uint *primitive_shapes, global const struct Shape *shapes,                             \
         global const struct Material *materials NORMALS_PARAMETER UVS_PARAMETER COLORS_PARAMETER ANALYTIC_PARAMETER \
             INSTANCES_PARAMETER
 #define SURFACE_VIEW                                                                                               \
-    {triangle_blocks, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT            \
+    {triangle_blocks FEW_SLOTS_ARGUMENT, primitive_shapes, shapes, materials NORMALS_ARGUMENT UVS_ARGUMENT COLORS_ARGUMENT            \
          ANALYTIC_ARGUMENT INSTANCES_ARGUMENT}
 
 #endif

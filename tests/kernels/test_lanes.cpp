@@ -57,6 +57,24 @@ TEST_P(Lanes, BitsOfAMaskAndBack) {
     for (std::size_t i = 0; i < bits.size(); ++i) ASSERT_EQ(any[i], bits[i] != 0 ? 1u : 0u);
 }
 
+TEST_P(Lanes, RowsAreTheWordsFromEachLanesPlaceOn) {
+    Probe p = probe(R"(
+        #include "core/rows.h"
+        kernel void run(global const float *words, global const uint *places, global float *out) {
+            Rows rows = gather_rows(words, as_UInt(load((global const float *)places)));
+            for (uint k = 0; k < ROW_WORDS; k++) store(out + k * LANES, rows.word[k]);
+        })");
+    std::vector<float> words(1000);
+    std::iota(words.begin(), words.end(), 0.0F);
+    std::vector<std::uint32_t> places(lanes());
+    for (std::uint32_t i = 0; i < lanes(); ++i) places[i] = i * 577 % 984;
+    std::vector<float> out(std::size_t{16} * lanes());
+    p.run("run", 1, words, places, out);
+    for (std::uint32_t k = 0; k < 16; ++k) {
+        for (std::uint32_t i = 0; i < lanes(); ++i) EXPECT_EQ(out[k * lanes() + i], words[places[i] + k]) << "word " << k << " of lane " << i;
+    }
+}
+
 TEST_P(Lanes, MasksCombine) {
     Probe p = probe(R"(
         kernel void run(global const uint *a, global const uint *b, global uint *out) {
