@@ -119,7 +119,8 @@ INLINE void nearer_facet(FewTriangles g, const FacetRay *r, uint i, NearestFacet
 INLINE void nearer_facets_in_pencil(FewTriangles g, const Pencil *pencil, const FacetRay *r, NearestFacet *n) {
     uint count = g.summary->facet_count;
     for (uint first = 0u; first < count; first += LANES) {
-        uint bits = few_in_pencil(g.corners, first, pencil) & lane_bits(lanes_below(first, count));
+        uint present = (uint)((1ul << min(count - first, LANES + 0u)) - 1ul);
+        uint bits = few_in_pencil(g.corners, first, pencil) & present;
         while (bits) {
             POP_LOWEST_BIT(bits, k);
             nearer_facet(g, r, first + k, n);
