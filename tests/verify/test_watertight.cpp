@@ -76,13 +76,27 @@ void add_bundle(std::vector<TestRay>& rays, const ClosedMesh& mesh, const glm::v
     }
 }
 
+// A batch, half of it in bundles.
+std::vector<TestRay> rays_from_inside(const ClosedMesh& mesh, const glm::vec3& center, const glm::vec3& half, Generator& random) {
+    std::vector<TestRay> rays;
+    while (rays.size() < batch / 2) rays.push_back(ray_from_inside(mesh, center, half, random));
+    while (rays.size() < batch) add_bundle(rays, mesh, center, half, random);
+    return rays;
+}
+
+// The shape, scaled, at the center.
+ClosedMesh placed(ClosedMesh mesh, float scale, const glm::vec3& center) {
+    for (glm::vec3& v : mesh.vertices) v = v * scale + center;
+    return mesh;
+}
+
 TEST_P(ClosedMeshes, LetNoRayPass) {
     const Placement& p = GetParam();
     // Far away the steps of floats are larger than needles are thick.
-    for (Shape& shape : shapes(p.offset == 0.0F)) {
+    for (const Shape& shape : shapes(p.offset == 0.0F)) {
         const glm::vec3 center{p.scale * p.offset};
-        for (glm::vec3& v : shape.mesh.vertices) v = v * p.scale + center;
-        const Bvh bvh = build_bvh(shape.mesh.triangles(), {}, BvhQuality::split, 1);
+        const ClosedMesh mesh = placed(shape.mesh, p.scale, center);
+        const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::split, 1);
         TraversalProbe alone, in_groups(false, true, 16, 8);
         Claim claim("Numerical stability", fmt::format("{}, {}: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
                     "rays");
@@ -90,10 +104,7 @@ TEST_P(ClosedMeshes, LetNoRayPass) {
         std::size_t passed = 0;
         const std::size_t batches = quick_or_full<std::size_t>(1, 40);
         for (std::size_t k = 0; k < batches; ++k) {
-            std::vector<TestRay> rays;
-            const glm::vec3 half = p.scale * shape.inside;
-            while (rays.size() < batch / 2) rays.push_back(ray_from_inside(shape.mesh, center, half, random));
-            while (rays.size() < batch) add_bundle(rays, shape.mesh, center, half, random);
+            const std::vector<TestRay> rays = rays_from_inside(mesh, center, p.scale * shape.inside, random);
             for (TraversalProbe* probe : {&alone, &in_groups}) {
                 for (const TestHit& hit : probe->trace(bvh, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
             }
@@ -107,10 +118,10 @@ TEST_P(ClosedMeshes, LetNoRayPass) {
 // Without a hierarchy, by facets.
 TEST_P(ClosedMeshes, LetNoRayPassWhereTheyAreSmall) {
     const Placement& p = GetParam();
-    for (Shape& shape : std::vector<Shape>{{"sphere of 32", sphere_mesh(1, 1.0F, {}), glm::vec3(0.4F)}, {"cube of 48", cube_mesh(2), glm::vec3(0.9F)}}) {
+    for (const Shape& shape : std::vector<Shape>{{"sphere of 32", sphere_mesh(1, 1.0F, {}), glm::vec3(0.4F)}, {"cube of 48", cube_mesh(2), glm::vec3(0.9F)}}) {
         const glm::vec3 center{p.scale * p.offset};
-        for (glm::vec3& v : shape.mesh.vertices) v = v * p.scale + center;
-        const Bvh bvh = build_bvh(shape.mesh.triangles(), {}, BvhQuality::split, 1);
+        const ClosedMesh mesh = placed(shape.mesh, p.scale, center);
+        const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::split, 1);
         const FewTriangleSet few = find_few_triangles(bvh);
         FewProbe probe;
         Claim claim("Numerical stability", fmt::format("{}, {}, no hierarchy: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
@@ -119,10 +130,7 @@ TEST_P(ClosedMeshes, LetNoRayPassWhereTheyAreSmall) {
         std::size_t passed = 0;
         const std::size_t batches = quick_or_full<std::size_t>(1, 40);
         for (std::size_t k = 0; k < batches; ++k) {
-            std::vector<TestRay> rays;
-            const glm::vec3 half = p.scale * shape.inside;
-            while (rays.size() < batch / 2) rays.push_back(ray_from_inside(shape.mesh, center, half, random));
-            while (rays.size() < batch) add_bundle(rays, shape.mesh, center, half, random);
+            const std::vector<TestRay> rays = rays_from_inside(mesh, center, p.scale * shape.inside, random);
             for (const TestHit& hit : probe.trace(few, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
         }
         claim.observe(static_cast<double>(passed));
