@@ -31,34 +31,30 @@ INLINE void transpose_fours(const Float *row, Float *out) {
     }
 }
 
-INLINE Rows transpose(const Float *row) {
+INLINE void transpose(const Float *row, Rows *rows) {
     Float fours[16];
     transpose_fours(row, fours);
-    Rows rows;
 #pragma unroll
     for (uint k = 0u; k < 4u; k++) {
         Float even_low = FOURS_EVEN(fours[k], fours[4u + k]), odd_low = FOURS_ODD(fours[k], fours[4u + k]);
         Float even_high = FOURS_EVEN(fours[8u + k], fours[12u + k]), odd_high = FOURS_ODD(fours[8u + k], fours[12u + k]);
-        rows.word[k] = FOURS_EVEN(even_low, even_high), rows.word[8u + k] = FOURS_ODD(even_low, even_high);
-        rows.word[4u + k] = FOURS_EVEN(odd_low, odd_high), rows.word[12u + k] = FOURS_ODD(odd_low, odd_high);
+        rows->word[k] = FOURS_EVEN(even_low, even_high), rows->word[8u + k] = FOURS_ODD(even_low, even_high);
+        rows->word[4u + k] = FOURS_EVEN(odd_low, odd_high), rows->word[12u + k] = FOURS_ODD(odd_low, odd_high);
     }
-    return rows;
 }
 #endif
 
 // word[k] of each lane is p[i + k].
-INLINE Rows gather_rows(global const float *p, UInt i) {
+INLINE void gather_rows(global const float *p, UInt i, Rows *rows) {
 #if LANES == 16
     LaneUints at = lane_uints(i);
     Float row[16];
 #pragma unroll
     for (uint k = 0u; k < 16u; k++) row[k] = load(p + at.value[k]);
-    return transpose(row);
+    transpose(row, rows);
 #else
-    Rows rows;
 #pragma unroll
-    for (uint k = 0u; k < ROW_WORDS; k++) rows.word[k] = gather(p + k, i);
-    return rows;
+    for (uint k = 0u; k < ROW_WORDS; k++) rows->word[k] = gather(p + k, i);
 #endif
 }
 

@@ -71,7 +71,8 @@ INLINE PlanarLight planar_light(LightInput in) {
     PlanarLight p = {light_vector(in, position), light_vector(in, edge1), light_vector(in, edge2), light_vector(in, normal),
                      light_field(in, inverse_area)};
 #else
-    Rows r = gather_rows((global const float *)in.lights + WORD_OFFSET(Light, position), in.light * RECORD_WORDS(Light));
+    Rows r;
+    gather_rows((global const float *)in.lights + WORD_OFFSET(Light, position), in.light * RECORD_WORDS(Light), &r);
 #define PLANAR_FIELD(name) r.word[WORD_OFFSET(Light, name) - WORD_OFFSET(Light, position)]
 #define PLANAR_VECTOR(name) vec3(PLANAR_FIELD(name.x), PLANAR_FIELD(name.y), PLANAR_FIELD(name.z))
     PlanarLight p = {PLANAR_VECTOR(position), PLANAR_VECTOR(edge1), PLANAR_VECTOR(edge2), PLANAR_VECTOR(normal), PLANAR_FIELD(inverse_area)};

@@ -92,7 +92,8 @@ typedef struct {
 
 // Nine words in a row.
 INLINE Corners gather_corners(global const float *p, UInt i) {
-    Rows r = gather_rows(p, i);
+    Rows r;
+    gather_rows(p, i, &r);
     Corners t = {vec3(r.word[0], r.word[1], r.word[2]), vec3(r.word[3], r.word[4], r.word[5]), vec3(r.word[6], r.word[7], r.word[8])};
     return t;
 }

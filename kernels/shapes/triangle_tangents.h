@@ -13,7 +13,8 @@ INLINE Int is_finite3(Vec3 v) { return (fabs(v.x) < LANE_INFINITY) & (fabs(v.y) 
 INLINE void triangle_tangents(global const float *uvs, UInt first_uv, UInt triangle, Vec3 normal, Vec3 *dp_du, Vec3 *dp_dv) {
     Int textured = first_uv != (UInt)WAVELOBE_NONE;
     UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Rows r = gather_rows(uvs, at);
+    Rows r;
+    gather_rows(uvs, at, &r);
     Float u0 = r.word[0], v0 = r.word[1];
     Float du1 = r.word[2] - u0, dv1 = r.word[3] - v0, du2 = r.word[4] - u0, dv2 = r.word[5] - v0;
     Float inverse = 1.0f / difference_of_products(du1, dv2, dv1, du2);

@@ -10,7 +10,8 @@ INLINE void triangle_uvs(global const float *uvs, UInt first_uv, UInt triangle, 
                          Float *v) {
     Int textured = first_uv != (UInt)WAVELOBE_NONE;
     UInt at = SELECT(textured, first_uv + triangle * 6u, (UInt)0u);
-    Rows r = gather_rows(uvs, at);
+    Rows r;
+    gather_rows(uvs, at, &r);
     *u = SELECT(textured, madd(r.word[0], wa, madd(r.word[2], wb, r.word[4] * wc)), wb);
     *v = SELECT(textured, madd(r.word[1], wa, madd(r.word[3], wb, r.word[5] * wc)), wc);
 }

@@ -61,7 +61,8 @@ TEST_P(Lanes, RowsAreTheWordsFromEachLanesPlaceOn) {
     Probe p = probe(R"(
         #include "core/rows.h"
         kernel void run(global const float *words, global const uint *places, global float *out) {
-            Rows rows = gather_rows(words, as_UInt(load((global const float *)places)));
+            Rows rows;
+            gather_rows(words, as_UInt(load((global const float *)places)), &rows);
             for (uint k = 0; k < ROW_WORDS; k++) store(out + k * LANES, rows.word[k]);
         })");
     std::vector<float> words(1000);
