@@ -84,8 +84,12 @@ void add_facet(FewTriangleSet& few, const Half& near, const Half* far) {
     }
     middle -= center;
     const glm::dvec3 area = glm::cross(u, v), normal = glm::normalize(area);
-    const glm::dvec3 along_u = glm::cross(v, normal) / glm::dot(u, glm::cross(v, normal));
-    const glm::dvec3 along_v = glm::cross(u, normal) / glm::dot(v, glm::cross(u, normal));
+    // In the plane, perpendicular to one side, and one along the other.
+    const auto along = [&](const glm::dvec3& side, const glm::dvec3& other) {
+        const glm::dvec3 across = glm::cross(other, normal);
+        return across / glm::dot(side, across);
+    };
+    const glm::dvec3 along_u = along(u, v), along_v = along(v, u);
     FewFacet f{};
     for (glm::length_t k = 0; k < 3; ++k) f.normal[k] = static_cast<float>(normal[k]);
     f.offset = static_cast<float>(glm::dot(normal, middle));

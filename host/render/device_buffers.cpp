@@ -112,9 +112,8 @@ void DeviceBuffers::upload(const DeviceScene& scene, const Bvh& bvh, const FewTr
 }
 
 void DeviceBuffers::add_rows(const std::string& name, std::span<const float> values) {
-    constexpr std::size_t read_at_once = 16;
     if (values.empty()) return;
-    Buffer buffer(device_, (values.size() + read_at_once) * sizeof(float));
+    Buffer buffer(device_, (values.size() + ROW_WORDS) * sizeof(float));
     std::ranges::copy(values, buffer.view<float>().begin());
     insert(name, std::move(buffer));
 }
@@ -128,9 +127,9 @@ void DeviceBuffers::add_few(const DeviceScene& scene, const Bvh& bvh, const FewT
         add("few_corners", few.corners);
         add("few_numbers", few.numbers);
     }
-    std::vector<float> slots(bvh.blocks.size() * BVH_WIDTH * FEW_SLOT_WORDS);
+    std::vector<float> slots(bvh.blocks.size() * BVH_WIDTH * ROW_WORDS);
     for (std::size_t slot = 0; slot < bvh.blocks.size() * BVH_WIDTH; ++slot) {
-        for (std::size_t row = 0; row < 9; ++row) slots[slot * FEW_SLOT_WORDS + row] = bvh.blocks[slot / BVH_WIDTH].vertex[row][slot % BVH_WIDTH];
+        for (std::size_t row = 0; row < 9; ++row) slots[slot * ROW_WORDS + row] = bvh.blocks[slot / BVH_WIDTH].vertex[row][slot % BVH_WIDTH];
     }
     add("few_slots", slots);
 }

@@ -4,8 +4,7 @@
 #define WAVELOBE_CORE_ROWS_H
 
 #include "core/lanes.h"
-
-#define ROW_WORDS 16u // are read, whether they are wanted or not: buffers end with as many of padding
+#include "shared/types.h"
 
 typedef struct {
     Float word[ROW_WORDS];
@@ -48,9 +47,9 @@ INLINE void transpose(const Float *row, Rows *rows) {
 INLINE void gather_rows(global const float *p, UInt i, Rows *rows) {
 #if LANES == 16
     LaneUints at = lane_uints(i);
-    Float row[16];
+    Float row[ROW_WORDS];
 #pragma unroll
-    for (uint k = 0u; k < 16u; k++) row[k] = load(p + at.value[k]);
+    for (uint k = 0u; k < ROW_WORDS; k++) row[k] = load(p + at.value[k]);
     transpose(row, rows);
 #else
 #pragma unroll

@@ -15,6 +15,7 @@
 
 #include "shapes/few_triangles.h"
 #if !HAS_MASKS
+#include "core/rows.h"
 #include "shapes/few_pencil.h"
 
 #define FACET_ERROR GAMMA(128)
@@ -22,8 +23,8 @@
 // The rays as the test of one facet needs them, relative to the center of the set and in its unit.
 typedef struct {
     Vec3 origin, direction;
-    Float error;   // of distances, for rays that meet the facet at a right angle
-    UInt from, to; // facets that a ray leaves and that it is aimed at: they are not in its way
+    Float error; // of distances, for rays that meet the facet at a right angle
+    UInt from;   // facet that a ray leaves
 } FacetRay;
 
 INLINE UInt facet_of(FewTriangles g, UInt number) {
@@ -32,10 +33,7 @@ INLINE UInt facet_of(FewTriangles g, UInt number) {
 }
 
 INLINE FacetRay facet_ray(FewTriangles g, const LaneRay *ray) {
-    global const struct FewSummary *s = g.summary;
-    FacetRay r = {sub(ray->origin, vec3((Float)s->center[0], (Float)s->center[1], (Float)s->center[2])), ray->direction, ZERO,
-                  facet_of(g, ray->from), (UInt)FACET_NONE};
-    r.error = FACET_ERROR * madd(sqrt(length_squared(r.origin)), (Float)(1.0f + GAMMA(4)), (Float)s->radius);
+    FacetRay r = {ray->off_center, ray->direction, FACET_ERROR * ray->farthest, facet_of(g, ray->from)};
     return r;
 }
 
@@ -59,8 +57,9 @@ INLINE Facet one_facet(FewTriangles g, uint i) {
 }
 
 INLINE Facet facets_of_lanes(FewTriangles g, UInt i) {
-    global const float *words = (global const float *)g.facets;
-#define FACET_WORD(name, k) gather(words + WORD_OFFSET(FewFacet, name) + (k), i * RECORD_WORDS(FewFacet))
+    Rows r;
+    gather_rows((global const float *)g.facets, i * RECORD_WORDS(FewFacet), &r);
+#define FACET_WORD(name, k) r.word[WORD_OFFSET(FewFacet, name) + (k)]
     Facet f = FACET_FIELDS;
 #undef FACET_WORD
     return f;
@@ -95,16 +94,20 @@ INLINE FacetPoint meet_facet(FewTriangles g, const FacetRay *r, uint i) {
     return p;
 }
 
+// How far the point is within the facet's edges, and between the ray's origin and `limit`. What is not a number stays so, in this order of
+// operands.
+INLINE Float depth_within(FacetPoint p, Float limit) { return LESSER(LESSER(p.inside, p.t), limit - p.t); }
+
 typedef struct {
     Float t, u, v, error;
     UInt facet; // FACET_NONE: nothing
     KeptMask unsure;
 } NearestFacet;
 
-// Not a number and infinity are unsure: comparisons say so, in this order of operands.
+// Not a number and infinity are unsure: comparisons say so.
 INLINE void nearer_facet(FewTriangles g, const FacetRay *r, uint i, NearestFacet *n) {
     FacetPoint p = meet_facet(g, r, i);
-    Float within = LESSER(LESSER(p.inside, p.t), n->t - p.t), error = p.error + n->error;
+    Float within = depth_within(p, n->t), error = p.error + n->error;
     Int other = r->from != (UInt)i, hit = (within > error) & other;
     n->unsure |= keep_mask(!(fabs(within) > error) & other);
     n->t = SELECT(hit, p.t, n->t);
@@ -119,6 +122,7 @@ INLINE void nearer_facet(FewTriangles g, const FacetRay *r, uint i, NearestFacet
 INLINE void nearer_facets_in_pencil(FewTriangles g, const Pencil *pencil, const FacetRay *r, NearestFacet *n) {
     uint count = g.summary->facet_count;
     for (uint first = 0u; first < count; first += LANES) {
+        // By scalars: bits of lanes are dear where there is no instruction for them.
         uint present = (uint)((1ul << min(count - first, LANES + 0u)) - 1ul);
         uint bits = few_in_pencil(g.corners, first, pencil) & present;
         while (bits) {
@@ -169,25 +173,21 @@ INLINE LaneHit closest_if_unsure(FewTriangles g, const LaneRay *ray, const Facet
     Int sure = found & (LESSER(inside, p.t) > p.error);
     LaneHit by_triangle = hit_of_triangle(g, &nearest, limit);
     NearestFacet n = {p.t, p.u, p.v, p.error, SELECT(sure, facet, (UInt)FACET_NONE), keep_mask(!sure)};
-    LaneHit by_facet = hit_of_facet(g, &n, limit);
-    LaneHit h = {SELECT(sure, by_facet.t, by_triangle.t), SELECT(sure, by_facet.u, by_triangle.u), SELECT(sure, by_facet.v, by_triangle.v),
-                 SELECT(sure, by_facet.slot, by_triangle.slot)};
-    return h;
+    return select_hit(sure, hit_of_facet(g, &n, limit), by_triangle);
 }
 
 // Lanes that are unsure of a facet which is not beyond the nearest one. What was too close to call may lie behind what was found later, or in
 // one plane with it: then neither is nearer.
-INLINE Int doubts_that_matter(FewTriangles g, const FacetRay *r, const NearestFacet *nearest) {
-    NearestFacet n = *nearest;
-    n.unsure = keep_mask(!TRUE_MASK);
-    Int found = n.facet != (UInt)FACET_NONE;
-    UInt plane = SELECT(found, GATHER_UINT_FIELD(g.facets, FewFacet, SELECT(found, n.facet, (UInt)0u), plane), (UInt)FACET_NONE);
+INLINE Int doubts_that_matter(FewTriangles g, const FacetRay *r, const NearestFacet *n) {
+    KeptMask not_beyond = keep_mask(!TRUE_MASK);
+    Int found = n->facet != (UInt)FACET_NONE;
+    UInt plane = SELECT(found, GATHER_UINT_FIELD(g.facets, FewFacet, SELECT(found, n->facet, (UInt)0u), plane), (UInt)FACET_NONE);
     for (uint i = 0u; i < g.summary->facet_count; i++) {
         FacetPoint p = meet_facet(g, r, i);
-        Float within = LESSER(LESSER(p.inside, p.t), n.t - p.t);
-        n.unsure |= keep_mask(!(within < -(p.error + n.error)) & (r->from != (UInt)i) & (plane != (UInt)g.facets[i].plane));
+        Int beyond = depth_within(p, n->t) < -(p.error + n->error);
+        not_beyond |= keep_mask(!beyond & (r->from != (UInt)i) & (plane != (UInt)g.facets[i].plane));
     }
-    return kept_mask(nearest->unsure & n.unsure);
+    return kept_mask(n->unsure & not_beyond);
 }
 
 INLINE LaneHit closest_triangle(FewTriangles g, const LaneRay *ray, Float limit) {
@@ -196,31 +196,22 @@ INLINE LaneHit closest_triangle(FewTriangles g, const LaneRay *ray, Float limit)
     LaneHit h = hit_of_facet(g, &n, limit);
     Int unsure = kept_mask(n.unsure);
     if (any_lane(unsure)) unsure = doubts_that_matter(g, &r, &n);
-    if (UNLIKELY(any_lane(unsure))) {
-        LaneHit decided = closest_if_unsure(g, ray, &r, limit);
-        h.t = SELECT(unsure, decided.t, h.t);
-        h.u = SELECT(unsure, decided.u, h.u);
-        h.v = SELECT(unsure, decided.v, h.v);
-        h.slot = SELECT(unsure, decided.slot, h.slot);
-    }
+    if (UNLIKELY(any_lane(unsure))) h = select_hit(unsure, closest_if_unsure(g, ray, &r, limit), h);
     return h;
 }
 
-// How many facets are tested before asking whether all rays are blocked.
-#define FACETS_BETWEEN_LOOKS 4u
-
 INLINE Int any_triangle(FewTriangles g, const LaneRay *ray, Float limit, UInt to, Int wanted) {
     FacetRay r = facet_ray(g, ray);
-    r.to = facet_of(g, to);
+    UInt aim = facet_of(g, to);
     Float reach = limit * g.summary->per_length;
     KeptMask left = keep_mask(wanted), unsure = keep_mask(!TRUE_MASK);
     for (uint i = 0u; i < g.summary->facet_count; i++) {
         FacetPoint p = meet_facet(g, &r, i);
-        Float within = LESSER(LESSER(p.inside, p.t), reach - p.t);
-        Int other = (r.from != (UInt)i) & (r.to != (UInt)i);
+        Float within = depth_within(p, reach);
+        Int other = (r.from != (UInt)i) & (aim != (UInt)i);
         left &= keep_mask(!((within > p.error) & other));
         unsure |= keep_mask(!(fabs(within) > p.error) & other);
-        if (i % FACETS_BETWEEN_LOOKS == 0u && !any_lane(kept_mask(left))) break;
+        if (i % FEW_BETWEEN_LOOKS == 0u && !any_lane(kept_mask(left))) break;
     }
     unsure &= left;
     if (UNLIKELY(any_lane(kept_mask(unsure)))) left &= keep_mask(!any_of_all(g, ray, limit, kept_mask(unsure)));

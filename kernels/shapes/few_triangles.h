@@ -96,16 +96,21 @@ INLINE TriangleTest test_triangle(const TurnedVertices *v, uint a, uint b, uint 
 // The rays as the test of one triangle needs them; lengths are in units of the set (FewSummary).
 typedef struct {
     Vec3 origin, direction;
-    UInt from;   // number of the triangle that the ray leaves and cannot meet, or HIT_NONE
-    Float unsure; // a depth this small or smaller says nothing about the side on which the triangle lies
+    UInt from;       // number of the triangle that the ray leaves and cannot meet, or HIT_NONE
+    Vec3 off_center; // origin relative to the center of the set
+    Float farthest;  // no point of the set is farther from the origin
+    Float unsure;    // a depth this small or smaller says nothing about the side on which the triangle lies
 } LaneRay;
 
 INLINE LaneRay lane_ray(FewTriangles g, Vec3 origin, Vec3 direction, UInt from) {
     global const struct FewSummary *s = g.summary;
-    LaneRay r = {scale(origin, (Float)s->per_length), direction, from, ZERO};
-    Vec3 away = sub(r.origin, vec3((Float)s->center[0], (Float)s->center[1], (Float)s->center[2]));
-    Float farthest = sqrt(length_squared(away)) * (1.0f + GAMMA(4)) + s->radius;
-    r.unsure = FEW_DISTANCE_ERROR * farthest * farthest * farthest;
+    LaneRay r;
+    r.origin = scale(origin, (Float)s->per_length);
+    r.direction = direction;
+    r.from = from;
+    r.off_center = sub(r.origin, vec3((Float)s->center[0], (Float)s->center[1], (Float)s->center[2]));
+    r.farthest = sqrt(length_squared(r.off_center)) * (1.0f + GAMMA(4)) + s->radius;
+    r.unsure = FEW_DISTANCE_ERROR * r.farthest * r.farthest * r.farthest;
     return r;
 }
 
@@ -164,6 +169,11 @@ typedef struct {
     UInt slot; // HIT_NONE: nothing
 } LaneHit;
 
+INLINE LaneHit select_hit(Int mask, LaneHit a, LaneHit b) {
+    LaneHit h = {SELECT(mask, a.t, b.t), SELECT(mask, a.u, b.u), SELECT(mask, a.v, b.v), SELECT(mask, a.slot, b.slot)};
+    return h;
+}
+
 #if HAS_ANALYTIC
 #include "shapes/few_analytic.h"
 #endif
@@ -200,7 +210,7 @@ INLINE LaneHit hit_of_triangle(FewTriangles g, const NearestTriangle *nearest, F
     return h;
 }
 
-// How many triangles are tested before asking whether all rays are blocked.
+// How many triangles or facets are tested before asking whether all rays are blocked.
 #define FEW_BETWEEN_LOOKS 4u
 
 // Lanes of `wanted` whose ray hits any triangle in (0, limit).

@@ -99,7 +99,7 @@ INLINE Corners gather_corners(global const float *p, UInt i) {
 }
 
 #if HAS_FEW_TRIANGLES
-INLINE Corners triangle_corners(SurfaceView s, UInt slot) { return gather_corners(s.few_slots, slot * FEW_SLOT_WORDS); }
+INLINE Corners triangle_corners(SurfaceView s, UInt slot) { return gather_corners(s.few_slots, slot * ROW_WORDS); }
 #else
 INLINE Vec3 block_vertex(SurfaceView s, UInt word, uint vertex) {
     global const float *row = s.triangle_blocks + vertex * 24u;

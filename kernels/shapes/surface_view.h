@@ -11,7 +11,7 @@
 typedef struct {
     global const float *triangle_blocks;  // TriangleBlock
 #if HAS_FEW_TRIANGLES
-    global const float *few_slots; // corners of the triangle in each slot, FEW_SLOT_WORDS a slot
+    global const float *few_slots; // corners of the triangle in each slot, ROW_WORDS a slot
 #endif
     global const uint *primitive_shapes;  // shape of each triangle, then of each analytic shape
     global const struct Shape *shapes;

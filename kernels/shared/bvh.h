@@ -45,7 +45,6 @@ struct FewTriangle {
 WAVELOBE_CHECK_SIZE(FewTriangle, 24);
 
 #define FEW_TRIANGLES_MAX 96u // a multiple of LANES
-#define FEW_SLOT_WORDS 16u    // as are read at once, core/rows.h
 #define FEW_VERTICES_MAX 128u
 
 // A parallelogram of two of them, or a triangle left over: where u and v are between -1 and 1, and of a triangle u + v is not above

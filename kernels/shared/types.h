@@ -15,6 +15,9 @@ using Uint64 = std::uint64_t;
 
 #define WAVELOBE_NONE 0xffffffffu
 
+// Words that core/rows.h reads at once, whether they are wanted or not: buffers that it reads end with as many of padding.
+#define ROW_WORDS 16u
+
 // Twelve bytes on both sides, unlike OpenCL's float3.
 struct Packed3 {
     float x, y, z;

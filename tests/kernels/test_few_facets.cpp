@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "accel/few_triangles.h"
+#include "support/few_probe.h"
 #include "support/ray_sets.h"
 
 namespace wavelobe::test {
@@ -14,18 +14,14 @@ const char* const source = R"(
 #include "shapes/few_facets.h"
 
 #define RAY(k) load(rays + (size_t)(k) * count + i)
-#define TRACED_PARAMETERS                                                                                                          \
-    global const float *vertices, global const struct FewTriangle *triangles, global const struct FewSummary *summary,           \
-        global const struct FewFacet *facets, global const float *corners, global const uint *numbers, global const float *rays, \
-        uint count
-#define TRACED                                                                     \
-    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers}; \
-    uint i = (uint)get_global_id(0) * LANES;                                       \
-    Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5))
 
 // By facets and by triangles, closest and any hit; whether facets were sure of both.
-kernel void trace_both(TRACED_PARAMETERS, global float *out) {
-    TRACED;
+kernel void trace_both(global const float *vertices, global const struct FewTriangle *triangles, global const struct FewSummary *summary,
+                       global const struct FewFacet *facets, global const float *corners, global const uint *numbers,
+                       global const float *rays, uint count, global float *out) {
+    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers};
+    uint i = (uint)get_global_id(0) * LANES;
+    Vec3 origin = vec3(RAY(0), RAY(1), RAY(2)), direction = vec3(RAY(3), RAY(4), RAY(5));
     LaneRay ray = lane_ray(geometry, origin, direction, as_UInt(RAY(7)));
     LaneHit by_facets = closest_triangle(geometry, &ray, RAY(6));
     NearestTriangle nearest = closest_of_all(geometry, &ray, RAY(6));
@@ -52,17 +48,11 @@ struct BothHits {
 
 std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<FacetRayInput>& rays) {
     const std::size_t count = (rays.size() + 15) / 16 * 16;
-    std::vector<float> packed(9 * count, 0.0F), out(10 * count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const FacetRayInput& input = rays[std::min(i, rays.size() - 1)];
-        for (std::size_t k = 0; k < 3; ++k) {
-            packed[k * count + i] = input.ray.origin[static_cast<glm::length_t>(k)];
-            packed[(3 + k) * count + i] = input.ray.direction[static_cast<glm::length_t>(k)];
-        }
-        packed[6 * count + i] = input.ray.limit;
-        std::memcpy(&packed[7 * count + i], &input.ray.from, sizeof(float));
-        std::memcpy(&packed[8 * count + i], &input.to, sizeof(float));
-    }
+    std::vector<TestRay> without_aim;
+    for (const FacetRayInput& input : rays) without_aim.push_back(input.ray);
+    std::vector<float> packed = packed_rays(without_aim, count), out(10 * count);
+    packed.resize(9 * count);
+    for (std::size_t i = 0; i < rays.size(); ++i) std::memcpy(&packed[8 * count + i], &rays[i].to, sizeof(float));
     static Probe probe(source);
     const std::vector<FewSummary> summary{few.summary};
     const auto ray_count = static_cast<cl_uint>(count);
@@ -80,15 +70,8 @@ std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<Fa
     return hits;
 }
 
-struct RoomScene {
-    explicit RoomScene(const Triangles& t) : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {}
-    Triangles triangles;
-    Bvh bvh;
-    FewTriangleSet few;
-};
-
 // As paths make them: from points of triangles, away from either side.
-std::vector<FacetRayInput> bounce_rays(const RoomScene& scene, std::size_t count, unsigned seed) {
+std::vector<FacetRayInput> bounce_rays(const SmallScene& scene, std::size_t count, unsigned seed) {
     Generator random(seed);
     std::vector<FacetRayInput> rays;
     for (std::size_t i = 0; i < count; ++i) {
@@ -112,7 +95,7 @@ void PrintTo(const Place& place, std::ostream* out) { *out << place.name; }
 class Facets : public testing::TestWithParam<Place> {
 protected:
     Facets() : scene(furnished_room(GetParam().scale, GetParam().offset, 0.05F)) {}
-    RoomScene scene;
+    SmallScene scene;
 };
 
 TEST_P(Facets, PairTheHalvesOfRectangles) {
@@ -159,7 +142,7 @@ TEST_P(Facets, MayBeTrianglesLeftOver) {
     Triangles holed = scene.triangles;
     holed.erase(holed.begin() + 20);
     holed.erase(holed.begin() + 3);
-    const RoomScene room(holed);
+    const SmallScene room(holed);
     EXPECT_EQ(room.few.summary.facet_count, 12U);
     EXPECT_EQ(room.few.summary.parallelogram_count, 10U);
     const std::vector<BothHits> hits = trace_both(room.few, bounce_rays(room, 200000, 2));
@@ -169,14 +152,14 @@ TEST_P(Facets, MayBeTrianglesLeftOver) {
 
 // A side of the block lies in the floor: rays that leave either meet the other or not by a rounding.
 TEST_P(Facets, AskTheWatertightTestWhereTheyCoincide) {
-    const RoomScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
+    const SmallScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
     const Differences d = compare_hits(trace_both(room.few, bounce_rays(room, 200000, 3)), GetParam().scale);
     EXPECT_GT(d.unsure, 10000U);
 }
 
 // Seen from outside the floor and the side of the block in it are equally near: whichever is found will do.
 TEST_P(Facets, NeedNotAskWhichOfTwoInOnePlaneIsNearer) {
-    const RoomScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
+    const SmallScene room(furnished_room(GetParam().scale, GetParam().offset, 0.0F));
     std::vector<std::uint32_t> planes;
     for (const FewFacet& facet : room.few.facets) planes.push_back(facet.plane);
     std::ranges::sort(planes);
@@ -229,7 +212,7 @@ TEST(FacetsOf, TrianglesThatAreNoParallelogram) {
     const Triangles trapezoid{{glm::vec3{0, 0, 0}, {2, 0, 0}, {1, 1, 0}}, {glm::vec3{0, 0, 0}, {1, 1, 0}, {0.5F, 1, 0}}};
     const Triangles bent{{glm::vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {glm::vec3{0, 0, 0}, {1, 1, 0}, {0, 1, 1e-4F}}};
     for (const Triangles& triangles : {trapezoid, bent}) {
-        const RoomScene scene(triangles);
+        const SmallScene scene(triangles);
         EXPECT_EQ(scene.few.summary.facet_count, 2U);
         EXPECT_EQ(scene.few.summary.parallelogram_count, 0U);
     }

@@ -39,16 +39,6 @@ FewProbe& probe() {
     return instance;
 }
 
-struct SmallScene {
-    explicit SmallScene(const Triangles& t)
-        : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {
-        EXPECT_EQ(few.triangles.size(), triangles.size());
-    }
-    Triangles triangles;
-    Bvh bvh;
-    FewTriangleSet few;
-};
-
 struct Soup {
     const char* name;
     float size;

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include <gtest/gtest.h>
+
 #include "accel/few_triangles.h"
 #include "support/traversal_probe.h"
 
@@ -21,6 +23,16 @@ inline std::vector<float> packed_rays(const std::vector<TestRay>& rays, std::siz
     }
     return packed;
 }
+
+struct SmallScene {
+    explicit SmallScene(const Triangles& t)
+        : triangles(t), bvh(build_bvh(triangles, {}, BvhQuality::split, 1)), few(find_few_triangles(bvh)) {
+        EXPECT_EQ(few.triangles.size(), triangles.size());
+    }
+    Triangles triangles;
+    Bvh bvh;
+    FewTriangleSet few;
+};
 
 class FewProbe {
 public:

@@ -2,6 +2,8 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "support/few_probe.h"
 #include "support/ray_sets.h"
 #include "support/verification.h"
@@ -90,52 +92,49 @@ ClosedMesh placed(ClosedMesh mesh, float scale, const glm::vec3& center) {
     return mesh;
 }
 
+using Tracer = std::function<std::vector<TestHit>(const std::vector<TestRay>&)>;
+
+// Traces batches of rays from inside a mesh in each of several ways.
+void claim_that_none_passes(const std::string& name, const ClosedMesh& mesh, const glm::vec3& center, const glm::vec3& half, unsigned seed,
+                            const std::vector<Tracer>& ways) {
+    Claim claim("Numerical stability", name + ": rays from inside, to vertices, edges and anywhere, that pass", "rays");
+    Generator random(seed);
+    std::size_t passed = 0;
+    const std::size_t batches = quick_or_full<std::size_t>(1, 40);
+    for (std::size_t k = 0; k < batches; ++k) {
+        const std::vector<TestRay> rays = rays_from_inside(mesh, center, half, random);
+        for (const Tracer& trace : ways) {
+            for (const TestHit& hit : trace(rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
+        }
+    }
+    claim.observe(static_cast<double>(passed));
+    claim.count(ways.size() * batch * batches);
+    claim.at_most(0.0);
+}
+
 TEST_P(ClosedMeshes, LetNoRayPass) {
     const Placement& p = GetParam();
+    const glm::vec3 center{p.scale * p.offset};
     // Far away the steps of floats are larger than needles are thick.
     for (const Shape& shape : shapes(p.offset == 0.0F)) {
-        const glm::vec3 center{p.scale * p.offset};
         const ClosedMesh mesh = placed(shape.mesh, p.scale, center);
         const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::split, 1);
         TraversalProbe alone, in_groups(false, true, 16, 8);
-        Claim claim("Numerical stability", fmt::format("{}, {}: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
-                    "rays");
-        Generator random(1);
-        std::size_t passed = 0;
-        const std::size_t batches = quick_or_full<std::size_t>(1, 40);
-        for (std::size_t k = 0; k < batches; ++k) {
-            const std::vector<TestRay> rays = rays_from_inside(mesh, center, p.scale * shape.inside, random);
-            for (TraversalProbe* probe : {&alone, &in_groups}) {
-                for (const TestHit& hit : probe->trace(bvh, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
-            }
-        }
-        claim.observe(static_cast<double>(passed));
-        claim.count(2 * batch * batches);
-        claim.at_most(0.0);
+        claim_that_none_passes(fmt::format("{}, {}", shape.name, p.name), mesh, center, p.scale * shape.inside, 1,
+                               {[&](const auto& rays) { return alone.trace(bvh, rays); }, [&](const auto& rays) { return in_groups.trace(bvh, rays); }});
     }
 }
 
 // Without a hierarchy, by facets.
 TEST_P(ClosedMeshes, LetNoRayPassWhereTheyAreSmall) {
     const Placement& p = GetParam();
+    const glm::vec3 center{p.scale * p.offset};
     for (const Shape& shape : std::vector<Shape>{{"sphere of 32", sphere_mesh(1, 1.0F, {}), glm::vec3(0.4F)}, {"cube of 48", cube_mesh(2), glm::vec3(0.9F)}}) {
-        const glm::vec3 center{p.scale * p.offset};
         const ClosedMesh mesh = placed(shape.mesh, p.scale, center);
-        const Bvh bvh = build_bvh(mesh.triangles(), {}, BvhQuality::split, 1);
-        const FewTriangleSet few = find_few_triangles(bvh);
+        const SmallScene scene(mesh.triangles());
         FewProbe probe;
-        Claim claim("Numerical stability", fmt::format("{}, {}, no hierarchy: rays from inside, to vertices, edges and anywhere, that pass", shape.name, p.name),
-                    "rays");
-        Generator random(2);
-        std::size_t passed = 0;
-        const std::size_t batches = quick_or_full<std::size_t>(1, 40);
-        for (std::size_t k = 0; k < batches; ++k) {
-            const std::vector<TestRay> rays = rays_from_inside(mesh, center, p.scale * shape.inside, random);
-            for (const TestHit& hit : probe.trace(few, rays)) passed += hit.slot == HIT_NONE || hit.any == 0 ? 1 : 0;
-        }
-        claim.observe(static_cast<double>(passed));
-        claim.count(batch * batches);
-        claim.at_most(0.0);
+        claim_that_none_passes(fmt::format("{}, {}, no hierarchy", shape.name, p.name), mesh, center, p.scale * shape.inside, 2,
+                               {[&](const auto& rays) { return probe.trace(scene.few, rays); }});
     }
 }
 
@@ -236,9 +235,7 @@ TEST(RandomRays, HitWhatTheyHitInEmbree) {
 // Without a hierarchy; against double precision alone.
 TEST(RandomRays, HitWhatDoublePrecisionAllowsInARoom) {
     for (const float scale : {1.0F, 1e-6F, 1e6F}) {
-        const Triangles room = furnished_room(scale, {}, 0.05F);
-        const Bvh bvh = build_bvh(room, {}, BvhQuality::split, 1);
-        const FewTriangleSet few = find_few_triangles(bvh);
+        const SmallScene room(furnished_room(scale, {}, 0.05F));
         FewProbe ours;
         Claim claim("Numerical stability", fmt::format("room of 12 rectangles, scale {}: random rays that hit wrongly", scale), "rays");
         std::size_t wrong = 0;
@@ -246,9 +243,9 @@ TEST(RandomRays, HitWhatDoublePrecisionAllowsInARoom) {
         const std::size_t batches = quick_or_full<std::size_t>(1, 100);
         for (std::size_t k = 0; k < batches; ++k) {
             const std::vector<TestRay> rays = random_rays(batch, scale, {}, static_cast<unsigned>(k));
-            const std::vector<TestHit> hits = ours.trace(few, rays);
+            const std::vector<TestHit> hits = ours.trace(room.few, rays);
             for (std::size_t i = 0; i < rays.size(); ++i) {
-                const std::string fault = fault_of_hit(rays[i], hits[i], bvh, room, Projection::rotation);
+                const std::string fault = fault_of_hit(rays[i], hits[i], room.bvh, room.triangles, Projection::rotation);
                 if (fault.empty()) continue;
                 ++wrong;
                 if (first.empty()) first = fmt::format("batch {} ray {}: {}", k, i, fault);
