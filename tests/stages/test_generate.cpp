@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "support/stage.h"
 
 namespace wavelobe::test {
@@ -137,6 +140,18 @@ TEST(PathIds, NameEachSampleOnceAndThoseOfAPixelInARow) {
             const std::uint32_t before = id < together * TILE_PIXELS ? 0 : PATH_SAMPLE(id - together * TILE_PIXELS, digits) + 1;
             ASSERT_GE(sample, before) << "in order";
         }
+    }
+}
+
+TEST_P(Generate, StartsEachPathOnceInTheOrderOfIds) {
+    for (const std::uint32_t samples : {1U, 3U, 8U, 12U, 16U}) {
+        StageBench bench(film_scene(), GetParam(), 1024);
+        bench.header().path_count = samples * TILE_PIXELS;
+        bench.header().next_path = 0;
+        bench.run("generate");
+        std::vector<std::uint32_t> expected(std::min<std::size_t>(1024, std::size_t{samples} * TILE_PIXELS));
+        std::iota(expected.begin(), expected.end(), 0U);
+        EXPECT_EQ(bench.ids(QUEUE_RAYS), expected) << samples << " samples";
     }
 }
 
