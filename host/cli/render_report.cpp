@@ -107,7 +107,7 @@ std::string replay_text(const Replay& replay) {
     const auto vector = [](const glm::vec3& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z); };
     std::string text;
     for (const Replay::Vertex& v : replay.vertices) {
-        text += v.shadow ? "  light sample" : fmt::format("vertex {}", v.depth);
+        text += v.shadow ? "  light sample" : v.emission_ray ? "emission ray" : fmt::format("vertex {}", v.depth);
         text += fmt::format(": {}, ", v.stage);
         if (v.shape && v.primitive) text += fmt::format("{} shape {} primitive {} ", v.shadow ? "from" : "hit", *v.shape, *v.primitive);
         if (!v.shape) text += "hit nothing, from ";

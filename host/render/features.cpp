@@ -87,6 +87,7 @@ std::vector<std::string> FeatureSet::names() const {
     add(thin_lens, "thin_lens");
     add(signed_filter, "signed_filter");
     add(error_estimate, "error_estimate");
+    add(emission_rays > 0, "emission_rays");
     add(masks, "masks");
     add(veiled_emitters, "veiled_emitters");
     add(media, "media");

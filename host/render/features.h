@@ -77,6 +77,7 @@ struct FeatureSet {
     bool smooth_cones = false;
     bool media = false;            // some of space absorbs
     bool clear_boundaries = false; // some shapes part media and are not there otherwise
+    int emission_rays = 0;         // of the camera in place of each path's, for the emitters that it sees
     Estimator estimator = Estimator::mis;
     bool independent_samples = false;
     int placed_lights = 0;     // chosen by a tree; 0: there are not several with a place

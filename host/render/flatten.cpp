@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 
+#include "render/emission_rays.h"
 #include "render/flatten_caustics.h"
 #include "render/flatten_instances.h"
 #include "render/flatten_layers.h"
@@ -56,6 +57,7 @@ public:
         out_.filter_table = build_filter_table(scene_.film.filter);
         flatten_layers(scene_, out_);
         finish_features();
+        out_.features.emission_rays = emission_rays(out_, scene_.film);
         return std::move(out_);
     }
 

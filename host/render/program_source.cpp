@@ -67,6 +67,7 @@ void write_macros(SourceWriter& out, const FeatureSet& f) {
     out.define("ESTIMATOR", static_cast<long>(f.estimator));
     out.define("INDEPENDENT_SAMPLES", f.independent_samples);
     out.define("HIDE_EMITTERS", f.hide_emitters);
+    out.define_unsigned("EMISSION_RAYS", f.emission_rays);
     if (has_bit(f.layers, LAYER_COVERAGE)) out.define("ENVIRONMENT_COVERS", f.environment_covers);
     out.define("HAS_MASKS", f.masks);
     out.define("HAS_VEILED_EMITTERS", f.veiled_emitters);
@@ -162,6 +163,8 @@ std::string program_source(const FeatureSet& features, int lanes, int block_slot
     SourceWriter out;
     out.define("LANES", lanes);
     out.define_unsigned("BLOCK_SLOTS", block_slots);
+    // One at a time where each is written down.
+    out.define_unsigned("SLOTS_TO_START", driver == Driver::replay ? lanes : block_slots);
     write_macros(out, features);
     write_layers(out, features);
     write_lobes(out, features);

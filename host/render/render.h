@@ -50,6 +50,7 @@ struct RenderSettings {
     double time_limit = 0.0;    // seconds of rendering; 0: none
     Estimator estimator = Estimator::mis;
     Sampler sampler = Sampler::sobol;
+    std::optional<int> emission_rays;  // of the camera a sample, for the emitters it sees; 0: paths find them; else by the scene
     bool guide_caustics = true;      // by photons, where light comes through glass or off mirrors (kernels/caustics)
     bool smooth_terminator = false;  // light leaves the curved surface that smooth normals stand for (kernels/shapes/smooth_terminator.h)
     std::optional<BvhQuality> bvh;  // by the number of triangles if there is none
@@ -79,6 +80,7 @@ struct Replay {
         std::string stage;         // that took the path up; intersect_shadow: a light sample's ray
         std::uint32_t depth = 0;   // of the vertex; not of shadow rays
         bool shadow = false;
+        bool emission_ray = false;      // of the camera, for an emitter alone: no vertex of the path
         std::optional<std::uint32_t> shape, primitive;  // that was hit; shadow rays: that they leave
         double distance = 0.0;     // length of the ray
         glm::vec3 position{0.0F};  // of the hit; where the ray starts if nothing was hit, and of shadow rays

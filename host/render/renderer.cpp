@@ -79,6 +79,7 @@ DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
     data.parameters.layer_film_step = layer_film_step(settings);
     data.features.independent_samples = settings.sampler == Sampler::independent;
     set_photon_count(data, expected_samples(settings, scene.film));
+    if (settings.emission_rays) data.features.emission_rays = *settings.emission_rays;
     data.features.caustics = data.features.caustics && settings.guide_caustics;
     data.features.smooth_terminator = settings.smooth_terminator && data.features.smooth_normals;
     data.features.error_estimate = settings.target_error > 0.0;

@@ -17,6 +17,7 @@ Replay::Vertex vertex_of(const ReplayRecord& r) {
     return {.stage = stage_name(r.stage),
             .depth = r.depth,
             .shadow = r.stage == STAGE_INTERSECT_SHADOW,
+            .emission_ray = r.depth == EMISSION_DEPTH,
             .shape = number(r.shape),
             .primitive = number(r.primitive),
             .distance = static_cast<double>(r.t),
@@ -60,6 +61,7 @@ public:
         block.first_sample = sample_.sample;
         // The only one that is left to start.
         block.next_path = id;
+        block.next_emission_ray = id * static_cast<std::uint32_t>(context_.features.emission_rays);
         block.path_count = id + 1;
         ReplayLog& log = context_.buffers.view<ReplayLog>("replay_log")[0];
         log.path = id;

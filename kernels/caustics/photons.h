@@ -77,7 +77,7 @@ INLINE uint emit_photons(Block block, const SceneView *scene, PhotonRecord recor
         uint bits = lane_bits(!light.delta & (pdf > 0.0f) & (flux > 0.0f) & (flux < INFINITY) & (finiteness3(start) + finiteness3(direction) == 0.0f));
         scatter(radiance_channel(block, 0u), RADIANCE_AT(id), flux, bits);
         scatter(radiance_channel(block, 1u), RADIANCE_AT(id), luminance(light.radiance), bits);
-        count = append_first_rays(rays, count, scene->parameters, start, direction, (Float)INFINITY, id, bits);
+        count = append_first_rays(rays, count, scene->parameters, start, direction, (Float)INFINITY, id, ONE, 0u, bits);
     }
     *rays.count = count;
     return first;

@@ -17,7 +17,7 @@
 #define PATH_THROUGHPUT 7u // 3
 #define PATH_PDF 10u      // solid angle density that chose `direction`; negative: a delta lobe or the camera did
 #define PATH_ID 11u       // of the path within its block
-#define PATH_DEPTH 12u    // vertices before this one
+#define PATH_DEPTH 12u    // vertices before this one; EMISSION_DEPTH: of a ray that ends with what it hits
 #define PATH_ETA 13u      // product of the relative indices crossed, for Russian roulette; with caustics also the root of how much likelier guided samples were
 #define PATH_RECEIVER 14u // where light was last sampled: code of the normal, and of the lobe in scenes with glossy ones (lights/receiver.h)
 #define PATH_INSTANCE (PATH_RECEIVER + HAS_LIGHT_TREE + HAS_GLOSSY_RECEIVERS) // of the hit, or INSTANCE_NONE; in scenes with instances

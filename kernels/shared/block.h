@@ -28,6 +28,9 @@
 #define RAY_FIELDS 17u        // of struct-of-arrays fields, see core/block.h; one more with a light tree, one if that serves glossy lobes, one with instances, one with media
 #define SHADOW_FIELDS 12u     // one more with media, one with facets
 
+// More vertices than any path has: what rays of the camera that look for emitters alone, EMISSION_RAYS a sample, say of their depth.
+#define EMISSION_DEPTH 0x7fffffffu
+
 // Queues, in order of the pipeline. `rays` holds paths about to be traced; the others those that were.
 #define QUEUE_RAYS 0u
 #define QUEUE_ESCAPED 1u
@@ -56,7 +59,8 @@ struct BlockHeader {
     float error;               // of a scene with HAS_ERROR_ESTIMATE: relMSE of the tile so far
     float error_deviation;     // standard error of that estimate
     Uint32 nonfinite_stage;    // that made it so, STAGE_x
-    Uint32 unused[2];
+    Uint32 next_emission_ray;  // of a scene with EMISSION_RAYS: how many are started
+    Uint32 unused;
 };
 WAVELOBE_CHECK_SIZE(BlockHeader, 80);
 

@@ -13,9 +13,10 @@ typedef struct {
     Float weight; // in the mean over the pixel's samples; 1 unless the filter is negative somewhere
 } FilmSample;
 
-INLINE FilmSample film_sample(Block block, const SceneView *scene, UInt path) {
+// Of a path's pixel by sample `id`.
+INLINE FilmSample film_sample_of(Block block, const SceneView *scene, UInt path, SampleId id) {
     FilmSample s;
-    s.id = path_sample_id(block, path, scene->parameters->seed);
+    s.id = id;
     Float u1, u2;
     sample_2d(s.id, (UInt)PAIR_FILM, &u1, &u2);
     s.x = convert_Float(as_Int(path_pixel_x(block, path))) + 0.5f + sample_filter(scene->filter_table, u1);
@@ -26,6 +27,10 @@ INLINE FilmSample film_sample(Block block, const SceneView *scene, UInt path) {
     s.weight = ONE;
 #endif
     return s;
+}
+
+INLINE FilmSample film_sample(Block block, const SceneView *scene, UInt path) {
+    return film_sample_of(block, scene, path, path_sample_id(block, path, scene->parameters->seed));
 }
 
 // A ray of the camera in world space, from its near to its far plane.

@@ -28,6 +28,7 @@ INLINE void start_tile(Block block, global const struct TileJob *job) {
     h->first_sample = job->first_sample;
     h->path_count = job->path_count;
     h->next_path = 0u;
+    h->next_emission_ray = 0u;
     h->nonfinite_path = WAVELOBE_NONE;
 }
 

@@ -108,7 +108,7 @@ kernel void replay_path(global struct BlockHeader *headers, global float *blocks
     }
         SCENE_STAGES(REPLAY_STAGE)
 #undef REPLAY_STAGE
-    } while (count[QUEUE_RAYS] + count[QUEUE_SHADOW] != 0u);
+    } while (count[QUEUE_RAYS] + count[QUEUE_SHADOW] != 0u || block.header->next_path < block.header->path_count);
     replay_log->count = written;
     replay_log->radiance = path_radiance(block, id);
     replay_log->stage = breaking_stage(radiance_channel(block, 0u)[RADIANCE_AT(id)]);

@@ -161,15 +161,19 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         UInt hit = read_uint(rays, PATH_HIT, i);
         Int found = live & (hit != (UInt)HIT_NONE);
         Rgb throughput = read_vec3(rays, PATH_THROUGHPUT, i);
+        UInt depth = read_uint(rays, PATH_DEPTH, i);
 #if HAS_ENVIRONMENT
-        uint out = lane_bits(live & !found);
+        Int leaving = live & !found;
+#if EMISSION_RAYS
+        leaving &= depth != (UInt)EMISSION_DEPTH;
+#endif
+        uint out = lane_bits(leaving);
         if (out) escaped = move_paths(QUEUE(block, ESCAPED), escaped, rays, i, throughput, out);
 #endif
 #if HAS_SURFACE_LIGHTS || !HAS_LOBE_CHOICE || CHOOSES_LATER
         UInt shape = gather_uint(scene->surfaces.primitive_shapes, primitive_of_hit(scene->surfaces, SELECT(found, hit, (UInt)0u)));
         UInt flags = GATHER_UINT_FIELD(scene->surfaces.shapes, Shape, shape, flags);
 #endif
-        UInt depth = read_uint(rays, PATH_DEPTH, i);
 #if HIDE_EMITTERS && HAS_SURFACE_LIGHTS
         Int passing = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u) & (depth == (UInt)0u);
         found &= !passing;
@@ -177,7 +181,11 @@ INLINE uint run_sort_paths(Block block, const SceneView *scene) {
         Int passing = !TRUE_MASK;
 #endif
 #if HAS_SURFACE_LIGHTS
-        uint lit = lane_bits(found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u));
+        Int emits = found & ((flags & (UInt)SHAPE_EMITS) != (UInt)0u);
+#if EMISSION_RAYS
+        emits &= depth != (UInt)0u; // what the camera sees is for rays of its own
+#endif
+        uint lit = lane_bits(emits);
         if (lit) emitted = move_paths(QUEUE(block, EMITTED), emitted, rays, i, throughput, lit);
 #endif
 #if HAS_VEILED_EMITTERS
