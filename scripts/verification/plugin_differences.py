@@ -61,6 +61,8 @@ EXPECTED = [
     (0.0, SHADOWS, LIMITLESS, facing(MATT, VEIL, emitter.point(position=Point(4, 0, 3), intensity=50.0))),
     (0.0, SHADOWS, LIMITLESS, facing(MATT, VEIL, emitter.directional(direction=Vector(-1, 0, -0.8), irradiance=5.0))),
     (0.0, SHADOWS, LIMITLESS, facing(MATT, VEIL, emitter.spot(to_world=Transform("lookat 4 0 3 0 0 0 0 1 0"), intensity=50.0, cutoff_angle=60.0))),
+    (4.0, "`direct` divides what lights without extent bring by no number of samples", integrator.direct(emitter_samples=4, bsdf_samples=0),
+     facing(MATT, emitter.point(position=Point(0, 0, 3), intensity=5.0))),
     (0.0, "a passage through a mask counts as a vertex", integrator.path(max_depth=2),
      facing(MATT, shape.rectangle(bsdf.mask(bsdf.diffuse(reflectance=0.0), opacity=0.5), to_world=Transform("scale 4", "translate 0 0 1")), behind_camera(4, 1, 5.0))),
     (0.5, "paths through nothing but masks count as background, with what the mask sent back", LIMITLESS,

@@ -61,6 +61,18 @@ TEST(MitsubaReader, DirectIntegratorRefusesDepthAndIsTwoEdgesDeep) {
         "unknown property `max_depth`"));
 }
 
+// Mitsuba's own pictures are then brighter.
+TEST(MitsubaReader, TellsOfManySamplesOfLightsWithoutExtent) {
+    const SceneFolder folder;
+    const auto warnings = [&](const char* samples, const char* light) {
+        return folder.elements(std::string(R"(<integrator type="direct"><integer name="emitter_samples" value=")") + samples + R"("/></integrator>)" + light).warnings;
+    };
+    ASSERT_EQ(warnings("4", R"(<emitter type="point"/>)").size(), 1U);
+    EXPECT_NE(warnings("4", R"(<emitter type="point"/>)")[0].find("as many times as bright"), std::string::npos);
+    EXPECT_TRUE(warnings("1", R"(<emitter type="point"/>)").empty());
+    EXPECT_TRUE(warnings("4", R"(<emitter type="constant"/>)").empty());
+}
+
 TEST(MitsubaReader, ReferencesMayComeFirst) {
     const Scene scene = SceneFolder().elements(R"(
         <shape type="sphere"><ref id="red"/></shape>

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <set>
+#include <string_view>
 
 #include "scene/mitsuba/query.h"
 #include "scene/mitsuba/values.h"
@@ -49,6 +50,11 @@ Integrator read_volpathmis(Query& query) {
     return read_path(query);
 }
 
+bool is_light_without_extent(const Object& object) {
+    constexpr std::array<std::string_view, 4> types{"point", "spot", "directional", "projector"};
+    return object.tag == "emitter" && std::ranges::find(types, object.type) != types.end();
+}
+
 // Emitted and once-scattered light: paths of at most two edges. How many samples go to which strategy
 // does not change the expected picture.
 Integrator read_direct(Query& query) {
@@ -60,6 +66,8 @@ Integrator read_direct(Query& query) {
     const std::int64_t emitter = query.integer("emitter_samples", shading, 0, int_max);
     const std::int64_t bsdf = query.integer("bsdf_samples", shading, 0, int_max);
     if (emitter + bsdf == 0) query.fault("both sample counts are zero", "take at least one sample of one kind");
+    if (emitter > 1 && std::ranges::any_of(query.context().document.objects, is_light_without_extent))
+        query.warn("Mitsuba 3.9 shows point, spot, directional and projector lights as many times as bright as it takes samples of emitters; here they are as bright as they say");
     Integrator integrator;
     integrator.max_depth = 2;
     integrator.environment_covers = false;
