@@ -95,6 +95,7 @@ private:
             if (size > content_.size() - position_) fail("`" + key + "` is longer than the file");
             for (const FixedType& fixed : fixed_types)
                 if (type == fixed.name && size != fixed.size) fail("`" + key + "` has the wrong size");
+            if (type == "floatvector" && size % 4 != 0) fail("`" + key + "` has the wrong size");
             if (type == "stringvector") check_strings(position_, position_ + size);
             if (type == "preview") check_preview(size);
             const auto signed_at = [&](std::size_t offset) { return static_cast<double>(static_cast<std::int32_t>(number(position_ + offset))); };
@@ -103,7 +104,11 @@ private:
                 height = signed_at(12) - signed_at(4) + 1.0;
             }
             if (key == "tiles" && size == 9) tile_pixels = static_cast<double>(number(position_)) * static_cast<double>(number(position_ + 4));
-            if (key == "channels") bytes = pixel_bytes(position_, position_ + size);
+            // The library reads such a list to its end, whatever its size and its name.
+            if (type == "chlist") {
+                const double listed = pixel_bytes(position_, position_ + size);
+                if (key == "channels") bytes = listed;
+            }
             if (key == "chunkCount" && size == 4 && number(position_) > content_.size() / 8) fail("it claims more chunks than it can hold");
             position_ += size;
         }
