@@ -81,7 +81,10 @@ Bitmap decode_luminance_chroma(const std::string& path, Bitmap&& image) {
     const Imath::Box2i window = file.dataWindow();
     const auto width = static_cast<std::ptrdiff_t>(image.width);
     std::vector<Imf::Rgba> pixels(image.rgb.size() / 3);
-    file.setFrameBuffer(pixels.data() - window.min.x - width * window.min.y, 1, static_cast<std::size_t>(width));
+    // OpenEXR addresses pixels by their position in the data window, which may be anywhere: the place of its (0, 0) is no pointer into anything.
+    const std::int64_t before = std::int64_t{window.min.x} + width * std::int64_t{window.min.y};
+    const std::uintptr_t origin = reinterpret_cast<std::uintptr_t>(pixels.data()) - static_cast<std::uintptr_t>(before) * sizeof(Imf::Rgba);
+    file.setFrameBuffer(reinterpret_cast<Imf::Rgba*>(origin), 1, static_cast<std::size_t>(width));
     file.readPixels(window.min.y, window.max.y);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         image.rgb[3 * i] = pixels[i].r;
@@ -105,12 +108,9 @@ Bitmap decode(const std::string& path) {
     const bool grey = names[0] == names[1];
     const std::size_t pixel = 3 * sizeof(float);
     const std::size_t row = pixel * static_cast<std::size_t>(width);
-    // OpenEXR addresses pixels by their position in the data window.
-    char* origin = reinterpret_cast<char*>(image.rgb.data()) - static_cast<std::ptrdiff_t>(pixel) * window.min.x -
-                   static_cast<std::ptrdiff_t>(row) * window.min.y;
     Imf::FrameBuffer buffer;
     for (std::size_t k = 0; k < (grey ? 1U : 3U); ++k)
-        buffer.insert(names[k], Imf::Slice(Imf::FLOAT, origin + k * sizeof(float), pixel, row));
+        buffer.insert(names[k], Imf::Slice::Make(Imf::FLOAT, image.rgb.data() + k, window, pixel, row));
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     if (grey)
