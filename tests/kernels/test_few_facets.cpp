@@ -138,6 +138,26 @@ TEST_P(Facets, FindWhatTheWatertightTestFinds) {
     EXPECT_GT(d.unsure, 0U);
 }
 
+// Where a facet's own rounding decides: at the edges and corners that it shares with others.
+TEST_P(Facets, AreNotSureAtTheirEdges) {
+    Generator random(8);
+    std::vector<FacetRayInput> rays = bounce_rays(scene, 200000, 9);
+    for (FacetRayInput& input : rays) {
+        const TriangleVertices& t = scene.triangles[random() % scene.triangles.size()];
+        const std::size_t corner = random() % 3;
+        const glm::vec3 target = t[corner] + (random() % 8 == 0 ? 0.0F : uniform(random, 0.0F, 1.0F)) * (t[(corner + 1) % 3] - t[corner]);
+        const glm::vec3 way = target - input.ray.origin;
+        if (way != glm::vec3(0.0F)) input.ray.direction = glm::normalize(way);
+    }
+    std::size_t unsure = 0;
+    for (const BothHits& h : trace_both(scene.few, rays)) {
+        ASSERT_EQ(h.by_facets.slot == HIT_NONE, h.by_triangles.slot == HIT_NONE);
+        ASSERT_EQ(h.by_facets.slot != HIT_NONE, h.by_facets.any != 0);
+        unsure += h.unsure ? 1 : 0;
+    }
+    EXPECT_GT(unsure, 10000U);
+}
+
 TEST_P(Facets, MayBeTrianglesLeftOver) {
     Triangles holed = scene.triangles;
     holed.erase(holed.begin() + 20);
