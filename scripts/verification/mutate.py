@@ -39,7 +39,7 @@ MUTANTS = [
      ["verify_test_estimators"] + SCENES),
     ("last child left out where a light's probability is found again", "lights/light_tree.h", "mine / running_sums(importances).s7",
      "mine / running_sums(importances).s6", ["kernels_test_light_tree"]),
-    ("facets sure of what is too close to call", "shapes/few_facets.h", "#define FACET_ERROR GAMMA(128)", "#define FACET_ERROR 0.0f",
+    ("facets sure of what is too close to call", "shapes/few_facets.h", "#define FACET_ERROR GAMMA(128)", "#define FACET_ERROR GAMMA(1)",
      ["kernels_test_few_facets"]),
     ("cosine of the light forgotten", "lights/area.h", "inverse_area / fabs(cosine)", "inverse_area", SCENES),
 ]

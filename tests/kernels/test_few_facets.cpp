@@ -34,6 +34,21 @@ kernel void trace_both(global const float *vertices, global const struct FewTria
                               SELECT(any, ONE, ZERO), SELECT(doubts_that_matter(geometry, &facet_rays, &found), ONE, ZERO)};
     for (uint k = 0; k < 10; k++) store(out + (size_t)k * count + i, values[k]);
 }
+
+// Where rays meet the plane of the facet that they are aimed at.
+kernel void meet_targets(global const float *vertices, global const struct FewTriangle *triangles, global const struct FewSummary *summary,
+                         global const struct FewFacet *facets, global const float *corners, global const uint *numbers,
+                         global const float *rays, uint count, global float *out) {
+    FewTriangles geometry = {vertices, triangles, summary, facets, corners, numbers};
+    uint i = (uint)get_global_id(0) * LANES;
+    LaneRay ray = lane_ray(geometry, vec3(RAY(0), RAY(1), RAY(2)), vec3(RAY(3), RAY(4), RAY(5)), (UInt)HIT_NONE);
+    FacetRay facet_rays = facet_ray(geometry, &ray);
+    UInt facet = facet_of(geometry, as_UInt(RAY(8)));
+    FacetPoint p = meet_plane(&facet_rays, facets_of_lanes(geometry, SELECT(facet == (UInt)FACET_NONE, (UInt)0u, facet)));
+    store(out + i, p.t);
+    store(out + count + i, p.inside);
+    store(out + 2u * count + i, p.error);
+}
 )";
 
 struct FacetRayInput {
@@ -46,17 +61,24 @@ struct BothHits {
     bool unsure = false;
 };
 
-std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<FacetRayInput>& rays) {
+// `values` arrays of as many as there are rays, rounded up to whole groups.
+std::vector<float> run_facets(const char* kernel, const FewTriangleSet& few, const std::vector<FacetRayInput>& rays, std::size_t values) {
     const std::size_t count = (rays.size() + 15) / 16 * 16;
     std::vector<TestRay> without_aim;
     for (const FacetRayInput& input : rays) without_aim.push_back(input.ray);
-    std::vector<float> packed = packed_rays(without_aim, count), out(10 * count);
+    std::vector<float> packed = packed_rays(without_aim, count), out(values * count);
     packed.resize(9 * count);
     for (std::size_t i = 0; i < rays.size(); ++i) std::memcpy(&packed[8 * count + i], &rays[i].to, sizeof(float));
     static Probe probe(source);
     const std::vector<FewSummary> summary{few.summary};
     const auto ray_count = static_cast<cl_uint>(count);
-    probe.run("trace_both", count / 16, few.vertices, few.triangles, summary, few.facets, few.corners, few.numbers, packed, ray_count, out);
+    probe.run(kernel, count / 16, few.vertices, few.triangles, summary, few.facets, few.corners, few.numbers, packed, ray_count, out);
+    return out;
+}
+
+std::vector<BothHits> trace_both(const FewTriangleSet& few, const std::vector<FacetRayInput>& rays) {
+    const std::vector<float> out = run_facets("trace_both", few, rays, 10);
+    const std::size_t count = out.size() / 10;
     std::vector<BothHits> hits(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto hit = [&](std::size_t k) {
@@ -156,6 +178,55 @@ TEST_P(Facets, AreNotSureAtTheirEdges) {
         unsure += h.unsure ? 1 : 0;
     }
     EXPECT_GT(unsure, 10000U);
+}
+
+// One rectangle by the corner across from the diagonal of one of its halves, in double precision.
+struct Rectangle {
+    glm::dvec3 corner, e1, e2;
+};
+
+Rectangle rectangle_of(const Triangles& triangles, std::size_t number) {
+    const TriangleVertices& t = triangles[number];
+    const TriangleVertices& other = triangles[number ^ 1U];
+    std::size_t k = 0;
+    while (std::ranges::find(other, t[k]) != other.end()) ++k;
+    const glm::dvec3 corner(t[k]);
+    return {corner, glm::dvec3(t[(k + 1) % 3]) - corner, glm::dvec3(t[(k + 2) % 3]) - corner};
+}
+
+// Of rays that meet a facet, to its edges: distances, and how far inside they are, are off by less than is said of them.
+TEST_P(Facets, KnowHowFarTheyMayBeOff) {
+    Generator random(10);
+    std::vector<FacetRayInput> rays = bounce_rays(scene, 200000, 11);
+    for (FacetRayInput& input : rays) {
+        const std::size_t number = random() % scene.triangles.size();
+        const Rectangle r = rectangle_of(scene.triangles, number);
+        const auto share = [&] { return std::clamp(static_cast<double>(uniform(random, -0.5F, 1.5F)), 1e-6, 1 - 1e-6); };
+        const double a = share(), b = share();
+        const glm::dvec3 way = r.corner + a * r.e1 + b * r.e2 - glm::dvec3(input.ray.origin);
+        if (glm::length(way) > 0.0) input.ray.direction = glm::vec3(glm::normalize(way));
+        input.to = static_cast<std::uint32_t>(number);
+    }
+    const std::vector<float> out = run_facets("meet_targets", scene.few, rays, 3);
+    const std::size_t count = out.size() / 3;
+    const double unit = static_cast<double>(scene.few.summary.per_length);
+    double worst = 0.0;
+    std::size_t met = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Rectangle r = rectangle_of(scene.triangles, rays[i].to);
+        const glm::dvec3 normal = glm::normalize(glm::cross(r.e1, r.e2)), o(rays[i].ray.origin), d(rays[i].ray.direction);
+        const double approach = glm::dot(normal, d), t = glm::dot(normal, r.corner - o) / approach;
+        const glm::dvec3 at = o + t * d - r.corner;
+        const double wide = glm::length(r.e1), high = glm::length(r.e2), x = glm::dot(at, r.e1) / wide, y = glm::dot(at, r.e2) / high;
+        const double inside = std::min({x, wide - x, y, high - y});
+        if (std::abs(approach) < 1e-3 || inside < 0.0 || t < 0.0) continue;
+        ++met;
+        const auto error = static_cast<double>(out[2 * count + i]);
+        worst = std::max({worst, std::abs(static_cast<double>(out[i]) - t * unit) / error, std::abs(static_cast<double>(out[count + i]) - inside * unit) / error});
+    }
+    EXPECT_GT(met, rays.size() / 2);
+    EXPECT_LT(worst, 1.0);
+    EXPECT_GT(worst, 1.0 / 128) << "not even one rounding was seen";
 }
 
 TEST_P(Facets, MayBeTrianglesLeftOver) {
