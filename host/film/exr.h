@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/render.h"
+#include "scene/projection.h"
 #include "scene/scene.h"
 
 namespace wavelobe {
@@ -22,10 +23,5 @@ struct PictureNotes {
 // film's display window. Attributes: `software`, `worldToCamera` and `worldToNDC` as the OpenEXR library defines them
 // (row vectors; camera space with x right, y up, z forward), and `wavelobe.scene`, `.spp`, `.samples`, `.seed`, `.seconds`.
 std::string encode_exr(const Image& image, const Film& film, const Camera& camera, const PictureNotes& notes);
-
-// The matrices of those attributes for column vectors.
-glm::dmat4 world_to_camera(const Camera& camera);
-// (0, 0) is the upper left corner of the film, (1, 1) the lower right one.
-glm::dmat4 world_to_ndc(const Camera& camera, const Film& film);
 
 }  // namespace wavelobe

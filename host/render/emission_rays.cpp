@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "scene/projection.h"
+
 namespace wavelobe {
 namespace {
 
@@ -17,40 +19,26 @@ constexpr double longest_side = 16.0;
 // Of larger films nothing is worked out: their pixels are small beside what is in the picture.
 constexpr std::size_t most_pixels = std::size_t{1} << 24U;
 
-glm::dvec3 vector_of(const Packed3& p) { return {p.x, p.y, p.z}; }
-
-// Where points of the world are on the film, in pixels.
-class Projection {
+// Where points of the world are on the film, in pixels; nothing of points that are not before the camera.
+class FilmPoints {
 public:
-    Projection(const RenderParameters& p, bool orthographic) : p_(p), orthographic_(orthographic) {
-        glm::dmat4 to_world(1.0);
-        for (int row = 0; row < 3; ++row) {
-            for (int column = 0; column < 4; ++column) to_world[column][row] = p.camera_to_world.m[4 * row + column];
-        }
-        to_camera_ = glm::inverse(to_world);
-        eye_ = glm::dvec3(to_world[3]);
-        axis_ = glm::dvec3(to_world[2]);
-    }
+    FilmPoints(const Camera& camera, const Film& film) : to_ndc_(world_to_ndc(camera, film)), size_(film.width, film.height) {}
 
-    // Nothing of points that are not before the camera.
-    std::optional<glm::dvec2> film(const glm::dvec3& point) const {
-        const glm::dvec3 c(to_camera_ * glm::dvec4(point, 1.0));
-        if (!(c.z > static_cast<double>(p_.near_clip))) return std::nullopt;
-        const glm::dvec2 on_plane = orthographic_ ? glm::dvec2(c) : glm::dvec2(c) / c.z;
-        return glm::dvec2((on_plane.x - static_cast<double>(p_.x_offset)) / static_cast<double>(p_.x_scale),
-                          (on_plane.y - static_cast<double>(p_.y_offset)) / static_cast<double>(p_.y_scale));
-    }
-
-    bool faces_camera(const glm::dvec3& point, const glm::dvec3& normal) const {
-        return glm::dot(normal, orthographic_ ? -axis_ : eye_ - point) > 0.0;
+    std::optional<glm::dvec2> operator()(const glm::dvec3& point) const {
+        const glm::dvec4 ndc = to_ndc_ * glm::dvec4(point, 1.0);
+        if (!(ndc.w > 0.0 && ndc.z > 0.0)) return std::nullopt;
+        return size_ * glm::dvec2(ndc) / ndc.w;
     }
 
 private:
-    RenderParameters p_;
-    bool orthographic_;
-    glm::dmat4 to_camera_{1.0};
-    glm::dvec3 eye_{0.0}, axis_{0.0};
+    glm::dmat4 to_ndc_;
+    glm::dvec2 size_;
 };
+
+bool faces_camera(const Camera& camera, const glm::dvec3& point, const glm::dvec3& normal) {
+    const bool orthographic = camera.projection == Camera::Projection::orthographic;
+    return glm::dot(normal, orthographic ? -glm::dvec3(camera.to_world[2]) : glm::dvec3(camera.to_world[3]) - point) > 0.0;
+}
 
 bool is_planar(std::uint32_t kind) {
     return kind == LIGHT_TRIANGLE || kind == LIGHT_SPHERICAL_TRIANGLE || kind == LIGHT_RECTANGLE || kind == LIGHT_PARALLELOGRAM;
@@ -62,16 +50,16 @@ struct Footprint {
     double share = 0.0;
 };
 
-std::optional<Footprint> footprint(const Light& light, const Projection& projection) {
-    const glm::dvec3 p = vector_of(light.position), e1 = vector_of(light.edge1), e2 = vector_of(light.edge2);
-    if (!is_planar(light.kind) || !projection.faces_camera(p, vector_of(light.normal))) return std::nullopt;
+std::optional<Footprint> footprint(const Light& light, const Camera& camera, const FilmPoints& film_point) {
+    const glm::dvec3 p(vector_of(light.position)), e1(vector_of(light.edge1)), e2(vector_of(light.edge2));
+    if (!is_planar(light.kind) || !faces_camera(camera, p, glm::dvec3(vector_of(light.normal)))) return std::nullopt;
     const bool triangle = light.kind == LIGHT_TRIANGLE || light.kind == LIGHT_SPHERICAL_TRIANGLE;
     std::array<glm::dvec2, 4> corners{};
     const std::array<glm::dvec3, 4> points = {p, p + e1, p + e2, p + e1 + e2};
     const std::size_t count = triangle ? 3 : 4;
     Footprint f;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::optional<glm::dvec2> at = projection.film(points.at(i));
+        const std::optional<glm::dvec2> at = film_point(points.at(i));
         if (!at) return std::nullopt;
         corners.at(i) = *at;
         f.lower = i == 0 ? *at : glm::min(f.lower, *at);
@@ -96,28 +84,30 @@ void add_coverage(std::vector<float>& covered, glm::dvec2 size, const Footprint&
 
 }  // namespace
 
-double partial_coverage(const DeviceScene& scene, int film_width, int film_height) {
-    const std::size_t pixels = static_cast<std::size_t>(film_width) * static_cast<std::size_t>(film_height);
-    if (pixels > most_pixels || scene.lights.empty()) return 0.0;
-    const Projection projection(scene.parameters, scene.features.orthographic);
-    std::vector<float> covered(pixels);
+double partial_coverage(const DeviceScene& scene, const Camera& camera, const Film& film) {
+    const std::size_t pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
+    if (pixels > most_pixels) return 0.0;
+    const FilmPoints film_point(camera, film);
+    std::vector<float> covered;  // of each pixel, once there is anything
     for (const Light& light : scene.lights) {
-        const std::optional<Footprint> f = footprint(light, projection);
+        const std::optional<Footprint> f = footprint(light, camera, film_point);
         if (!f) continue;
         const glm::dvec2 box = f->upper - f->lower;
         // What is seen edge on has no area; what is not finite is no emitter of few pixels.
-        if (std::max(box.x, box.y) <= longest_side && std::isfinite(f->share)) add_coverage(covered, {film_width, film_height}, *f);
+        if (std::max(box.x, box.y) > longest_side || !std::isfinite(f->share)) continue;
+        covered.resize(pixels);
+        add_coverage(covered, {film.width, film.height}, *f);
     }
     double sum = 0.0;
     for (const float c : covered) sum += static_cast<double>(std::min(c, 1.0F) * (1.0F - std::min(c, 1.0F)));
     return sum / static_cast<double>(pixels);
 }
 
-int emission_rays(const DeviceScene& scene, const Film& film) {
+int emission_rays(const DeviceScene& scene, const Camera& camera, const Film& film) {
     const FeatureSet& f = scene.features;
     // Rays that go on behind emitters, weights of single samples and their squares are those of whole paths.
     if (!f.has_surface_lights() || f.hide_emitters || f.veiled_emitters || f.signed_filter || f.moments) return 0;
-    return partial_coverage(scene, film.width, film.height) >= least_coverage ? rays_a_sample : 0;
+    return partial_coverage(scene, camera, film) >= least_coverage ? rays_a_sample : 0;
 }
 
 }  // namespace wavelobe

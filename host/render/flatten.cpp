@@ -57,7 +57,7 @@ public:
         out_.filter_table = build_filter_table(scene_.film.filter);
         flatten_layers(scene_, out_);
         finish_features();
-        out_.features.emission_rays = emission_rays(out_, scene_.film);
+        out_.features.emission_rays = emission_rays(out_, scene_.camera, scene_.film);
         return std::move(out_);
     }
 

@@ -14,6 +14,9 @@
 
 namespace wavelobe {
 
+inline Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
+inline glm::vec3 vector_of(const Packed3& p) { return {p.x, p.y, p.z}; }
+
 // Device structs share names with the neutral ones; here they carry a prefix.
 using DeviceMaterial = ::Material;
 using DeviceNesting = ::Nesting;

@@ -9,8 +9,6 @@
 namespace wavelobe {
 namespace {
 
-Packed3 packed(const glm::vec3& v) { return {v.x, v.y, v.z}; }
-
 // A light record with nothing set but its kind.
 Light light_of(LightIndex kind, const TexturedRgb& radiance) {
     Light light{};
@@ -156,7 +154,7 @@ void LightFlattener::widen_triangles(double radius) {
     bool small = false;
     for (Light& light : out_.lights) {
         if (light.kind != LIGHT_TRIANGLE) continue;
-        const glm::vec3 e1(light.edge1.x, light.edge1.y, light.edge1.z), e2(light.edge2.x, light.edge2.y, light.edge2.z);
+        const glm::vec3 e1 = vector_of(light.edge1), e2 = vector_of(light.edge2);
         const float longest = std::max({glm::length(e1), glm::length(e2), glm::length(e2 - e1)});
         const bool wide = static_cast<double>(longest) > least_share * radius;
         if (wide) light.kind = LIGHT_SPHERICAL_TRIANGLE;

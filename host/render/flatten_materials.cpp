@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::uint32_t bit(LobeIndex lobe) { return 1U << lobe; }
 
-Packed3 packed(const Rgb& v) { return {v.x, v.y, v.z}; }
 
 double mean_component(const Parameter& p) {
     if (!p.texture) return (static_cast<double>(p.value.x) + p.value.y + p.value.z) / 3.0;

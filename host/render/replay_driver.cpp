@@ -7,8 +7,6 @@
 namespace wavelobe {
 namespace {
 
-glm::vec3 vector_of(const Packed3& p) { return {p.x, p.y, p.z}; }
-
 std::optional<std::uint32_t> number(std::uint32_t word) {
     return word == WAVELOBE_NONE ? std::nullopt : std::optional(word);
 }

@@ -37,7 +37,8 @@ RenderSettings settings_of(std::optional<int> rays, int samples, std::uint32_t s
     return settings;
 }
 
-int rays_of(const Scene& scene) { return emission_rays(flatten_scene(scene), scene.film); }
+int rays_of(const Scene& scene) { return emission_rays(flatten_scene(scene), scene.camera, scene.film); }
+double coverage_of(const Scene& scene) { return partial_coverage(flatten_scene(scene), scene.camera, scene.film); }
 
 double mean_square_difference(const Image& a, const Image& b) {
     double sum = 0.0;
@@ -82,20 +83,20 @@ TEST(EmissionRays, DenseMeshesAreNoSmallEmitters) {
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 2) half.triangles.push_back(mesh.triangles[i]);
     Scene sparse = scene;
     make_emitter(add_shape(sparse, half, add_diffuse(sparse, Rgb{0}), "half of them"), Rgb{1});
-    EXPECT_GT(partial_coverage(flatten_scene(sparse), width, height), 0.1);
+    EXPECT_GT(coverage_of(sparse), 0.1);
     make_emitter(add_shape(scene, mesh, add_diffuse(scene, Rgb{0}), "all"), Rgb{1});
-    EXPECT_LT(partial_coverage(flatten_scene(scene), width, height), 0.01);
+    EXPECT_LT(coverage_of(scene), 0.01);
 }
 
 // Of lamps that cover the share c of each pixel by themselves: c (1 - c), by hand.
 TEST(EmissionRays, CoverageIsThatOfTheFilm) {
     Scene scene = small_lamps(0);
     make_emitter(add_quad(scene, {0.05F, 0, 0.05F}, {0, 0, 0.1F}, {0.1F, 0, 0}, add_diffuse(scene, Rgb{0})), Rgb{1});
-    EXPECT_NEAR(partial_coverage(flatten_scene(scene), width, height), 0.25 * 0.75 / (width * height), 1e-3 / (width * height));
+    EXPECT_NEAR(coverage_of(scene), 0.25 * 0.75 / (width * height), 1e-3 / (width * height));
     make_emitter(add_triangle(scene, {-0.05F, 0, 0.05F}, {-0.05F, 0, 0.15F}, {0.05F, 0, 0.15F}, 0), Rgb{1});
     // Half of two boxes of 0.05 by 0.1, one in each of two pixels: in the right one beside the square.
     const double left = 0.0625, right = 0.25 + 0.0625;
-    EXPECT_NEAR(partial_coverage(flatten_scene(scene), width, height), (left * (1 - left) + right * (1 - right)) / (width * height), 1e-3 / (width * height));
+    EXPECT_NEAR(coverage_of(scene), (left * (1 - left) + right * (1 - right)) / (width * height), 1e-3 / (width * height));
 }
 
 TEST(EmissionRays, ChangeNoMeanAndTakeMostOfTheNoise) {
