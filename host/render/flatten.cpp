@@ -327,6 +327,7 @@ void Flattener::set_parameters() {
     p.window_y = static_cast<std::uint32_t>(film.crop_y);
     p.window_width = static_cast<std::uint32_t>(film.crop_width);
     p.window_height = static_cast<std::uint32_t>(film.crop_height);
+    p.sequence.digits = SEQUENCE_A_PIXEL;
     p.max_depth = scene_.integrator.max_depth < 0 ? 0x7fffffffU : static_cast<std::uint32_t>(scene_.integrator.max_depth);
     p.rr_depth = static_cast<std::uint32_t>(std::max(scene_.integrator.rr_depth, 1));
     p.light_count = lights_.count();

@@ -55,10 +55,12 @@ INLINE LightSample photon_light(LightInput in, SampleId sample, Vec3 center, Flo
 // faces it. The flux of a photon and the radiance it is of stand in the first channels of its path's radiance. Returns the next to start.
 INLINE uint emit_photons(Block block, const SceneView *scene, PhotonRecord record, uint first) {
     Queue rays = QUEUE(block, RAYS);
+    // Their number is not that of the picture's samples.
+    struct SampleSequence sequence = {scene->parameters->sequence.seed, SEQUENCE_A_PIXEL};
     uint count = 0u;
     for (; first < PHOTONS_A_BATCH && count + LANES <= BLOCK_SLOTS; first += LANES) {
         UInt id = LANE_INDEX + (UInt)first;
-        SampleId sample = path_sample_id(block, id, scene->parameters->seed);
+        SampleId sample = path_sample_id(block, id, sequence);
         Float u_target, u_light, u_deep, v1, v2, unused;
         sample_2d(sample, (UInt)0u, &u_target, &unused);
         sample_2d(sample, (UInt)1u, &u_light, &u_deep);

@@ -16,7 +16,7 @@ typedef struct {
     UvPartials partials;    // of layers that ask for them
 } LayerInput;
 
-INLINE SampleId layer_sample(LayerInput in) { return path_sample_id(in.block, in.path->id, in.scene->parameters->seed); }
+INLINE SampleId layer_sample(LayerInput in) { return path_sample_id(in.block, in.path->id, in.scene->parameters->sequence); }
 
 INLINE void put_vec3(Float *out, Vec3 v) { out[0] = v.x, out[1] = v.y, out[2] = v.z; }
 

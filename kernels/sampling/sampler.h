@@ -1,5 +1,10 @@
 // Sample values: Owen-scrambled Sobol points in padded pairs of dimensions, all from hashes of where they are used, so
-// that a value is a function of (pixel, sample index, pair, seed) alone.
+// that a value is a function of (pixel, sample index, pair, sequence) alone.
+//
+// Squares of pixels share one sequence, of which each pixel has a run, in Morton order: as the samples of a run are well
+// spread, so are those of 2 x 2, 4 x 4 ... pixels together, and what is left of the noise is fine-grained, which eyes and
+// denoisers mind least. Ahmed and Wonka 2020, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
+// Hierarchical Ordering of Pixels"; there the order is scrambled, here the sequence is.
 //
 // Burley 2020, "Practical Hash-based Owen Scrambling". Each pair is the first two Sobol dimensions: a (0, 2)-sequence,
 // which scrambling keeps; nested uniform shuffling of the index makes pairs independent of each other.
@@ -7,9 +12,12 @@
 #define WAVELOBE_SAMPLING_SAMPLER_H
 
 #include "core/lanes.h"
+#include "shared/scene.h"
+
+#define LARGEST_SQUARE 6u // binary digits of the pixels along a side: in larger ones nothing more is gained
 
 typedef struct {
-    UInt pixel_hash;
+    UInt square_hash; // of the square of pixels and the seed
     UInt reversed_index;
 } SampleId;
 
@@ -64,17 +72,28 @@ INLINE UInt sobol_second_reversed(UInt index) {
 // The upper 24 bits as a multiple of 2^-24 in [0, 1).
 INLINE Float unit_float(UInt bits) { return convert_Float(as_Int(bits >> 8)) * 5.9604644775390625e-8f; }
 
-// The sample of one path: `index` counts the samples of its pixel, below 2^31.
-INLINE SampleId sample_id(UInt x, UInt y, UInt index, uint seed) {
+// The bits of x and y, below 2^8, in turn.
+INLINE UInt morton(UInt x, UInt y) {
+    UInt both = x | y << 16;
+    both = (both | both << 4) & (UInt)0x0f0f0f0fu;
+    both = (both | both << 2) & (UInt)0x33333333u;
+    both = (both | both << 1) & (UInt)0x55555555u;
+    return (both | both >> 15) & (UInt)0xffffu;
+}
+
+// The sample of one path: `index` counts the samples of its pixel, below 2^digits of the sequence.
+INLINE SampleId sample_id(UInt x, UInt y, UInt index, struct SampleSequence sequence) {
+    uint side = min(LARGEST_SQUARE, (32u - sequence.digits) / 2u);
+    UInt inside = (UInt)((1u << side) - 1u);
     SampleId id;
-    id.pixel_hash = mix_bits(mix_bits(mix_bits((UInt)seed) + x) + y);
-    id.reversed_index = reverse_bits(index);
+    id.square_hash = mix_bits(mix_bits(mix_bits((UInt)sequence.seed) + (x >> side)) + (y >> side));
+    id.reversed_index = reverse_bits(index + (morton(x & inside, y & inside) << sequence.digits));
     return id;
 }
 
 // Two values of the 2D pair number `pair`, in [0, 1).
 INLINE void sample_2d(SampleId id, UInt pair, Float *u1, Float *u2) {
-    UInt shuffle_seed = mix_bits(id.pixel_hash + pair * (UInt)0x9e3779b9u); // golden ratio: spreads small counts
+    UInt shuffle_seed = mix_bits(id.square_hash + pair * (UInt)0x9e3779b9u); // golden ratio: spreads small counts
 #if INDEPENDENT_SAMPLES // to compare with: every sample drawn by itself
     UInt h = mix_bits(shuffle_seed + mix_bits(id.reversed_index + (UInt)0x9e3779b9u));
     *u1 = unit_float(h);

@@ -21,7 +21,7 @@
 
 // What shapes with opacity are looked up in.
 typedef struct {
-    uint seed;
+    struct SampleSequence sequence;
     global const struct Opacity *opacities; // one a shape
     global const uint *primitive_shapes;
     global const struct Shape *shapes;
@@ -46,7 +46,7 @@ typedef struct {
 #define OPACITY_TEXTURE_ARGUMENTS
 #endif
 #define OPACITY_VIEW                                                                                            \
-    {parameters->seed, opacities, primitive_shapes, shapes, parameters->triangle_count OPACITY_UVS_ARGUMENT     \
+    {parameters->sequence, opacities, primitive_shapes, shapes, parameters->triangle_count OPACITY_UVS_ARGUMENT     \
          OPACITY_TEXTURE_ARGUMENTS}
 
 // Opacity of shapes at texture coordinates, in [0, 1]. `alpha` scales it before the cutoff.
@@ -69,8 +69,8 @@ INLINE Float opacity_at(OpacityView o, UInt shape, Float u, Float v, Float alpha
 
 // A number of the ray's own, from the path it belongs to and its direction.
 INLINE UInt ray_key(OpacityView o, Block block, UInt path, Vec3 direction) {
-    SampleId sample = path_sample_id(block, path, o.seed);
-    UInt h = mix_bits(sample.pixel_hash + sample.reversed_index);
+    SampleId sample = path_sample_id(block, path, o.sequence);
+    UInt h = mix_bits(sample.square_hash + sample.reversed_index);
     h = mix_bits(h + as_UInt(direction.x));
     h = mix_bits(h + as_UInt(direction.y));
     return mix_bits(h + as_UInt(direction.z));

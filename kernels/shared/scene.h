@@ -36,6 +36,17 @@ WAVELOBE_CHECK_SIZE(Shape, 40);
 #define SHAPE_HAS_TANGENTS 4096u    // of its vertices
 #define SHAPE_CLEAR 2048u           // parts media and is not there otherwise: rays go on behind it
 
+// Where the sample values of a picture come from: which of the sequences (another seed, other noise), and how it is shared out among the
+// pixels (sampling/sampler.h).
+struct SampleSequence {
+    Uint32 seed;
+    Uint32 digits; // binary, that number the samples of a pixel; SEQUENCE_A_PIXEL where their number is open
+};
+WAVELOBE_CHECK_SIZE(SampleSequence, 8);
+
+// Of `digits`: no two pixels share a sequence.
+#define SEQUENCE_A_PIXEL 31u
+
 // Camera, film window, and the integrator's limits.
 struct RenderParameters {
     struct Affine camera_to_world;
@@ -44,7 +55,7 @@ struct RenderParameters {
     float near_clip, far_clip;
     float aperture_radius, focus_distance; // of a thin lens
     Uint32 window_x, window_y, window_width, window_height; // of the film that is rendered
-    Uint32 seed;
+    struct SampleSequence sequence;
     Uint32 max_depth; // vertices a path may have; at least 1
     Uint32 rr_depth;  // Russian roulette from this many vertices on
     Uint32 light_count;
@@ -55,7 +66,7 @@ struct RenderParameters {
     float layer_film_step;       // pixels between samples, for layers that ask how fast something varies
     Uint32 camera_medium; // that the camera is in
 };
-WAVELOBE_CHECK_SIZE(RenderParameters, 176);
+WAVELOBE_CHECK_SIZE(RenderParameters, 180);
 
 // Squares of red, green and blue, and of X, Y and Z, that a pixel holds where they are asked for.
 #define MOMENT_CHANNELS 6u

@@ -30,7 +30,7 @@ INLINE FilmSample film_sample_of(Block block, const SceneView *scene, UInt path,
 }
 
 INLINE FilmSample film_sample(Block block, const SceneView *scene, UInt path) {
-    return film_sample_of(block, scene, path, path_sample_id(block, path, scene->parameters->seed));
+    return film_sample_of(block, scene, path, path_sample_id(block, path, scene->parameters->sequence));
 }
 
 // A ray of the camera in world space, from its near to its far plane.

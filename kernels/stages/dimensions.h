@@ -21,17 +21,19 @@
 #define PAIR_BLEND 4u     // which of two materials
 
 // Of `parts` samples in place of each of the path's pixel, number `part` of those in place of the path's own.
-INLINE SampleId path_sample_part(Block block, UInt id, uint seed, UInt part, uint parts) {
+INLINE SampleId path_sample_part(Block block, UInt id, struct SampleSequence sequence, UInt part, uint parts) {
     UInt sample = path_sample(block, id);
 #if HAS_ERROR_ESTIMATE
     // Two pictures that share no random number.
     sample = HALF_INDEX(sample);
-    seed ^= HALF_OF(block.header->first_sample) * 0x9e3779b9u;
+    sequence.seed ^= HALF_OF(block.header->first_sample) * 0x9e3779b9u;
 #endif
-    return sample_id(path_pixel_x(block, id), path_pixel_y(block, id), sample * (UInt)parts + part, seed);
+    return sample_id(path_pixel_x(block, id), path_pixel_y(block, id), sample * (UInt)parts + part, sequence);
 }
 
-INLINE SampleId path_sample_id(Block block, UInt id, uint seed) { return path_sample_part(block, id, seed, (UInt)0u, 1u); }
+INLINE SampleId path_sample_id(Block block, UInt id, struct SampleSequence sequence) {
+    return path_sample_part(block, id, sequence, (UInt)0u, 1u);
+}
 
 INLINE UInt vertex_pair(UInt depth, uint pair) { return depth * PAIRS_PER_VERTEX + (UInt)(PAIRS_BEFORE_PATH + pair); }
 

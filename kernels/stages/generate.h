@@ -27,7 +27,7 @@ INLINE uint start_emission_rays(Block block, const SceneView *scene, Queue rays)
     while (count + LANES <= SLOTS_TO_START && next < end) {
         UInt ray = LANE_INDEX + (UInt)next;
         UInt id = ray / (UInt)EMISSION_RAYS;
-        SampleId sample = path_sample_part(block, id, scene->parameters->seed, ray % (UInt)EMISSION_RAYS, EMISSION_RAYS);
+        SampleId sample = path_sample_part(block, id, scene->parameters->sequence, ray % (UInt)EMISSION_RAYS, EMISSION_RAYS);
         count = append_camera_rays(block, scene, rays, count, id, sample, (Float)(1.0f / EMISSION_RAYS), EMISSION_DEPTH);
         next += LANES;
     }
@@ -47,7 +47,7 @@ INLINE uint run_generate(Block block, const SceneView *scene) {
     uint count = *rays.count, next = block.header->next_path, end = block.header->path_count;
     while (count + LANES <= SLOTS_TO_START && next < end) {
         UInt id = LANE_INDEX + (UInt)next;
-        count = append_camera_rays(block, scene, rays, count, id, path_sample_id(block, id, scene->parameters->seed), ONE, 0u);
+        count = append_camera_rays(block, scene, rays, count, id, path_sample_id(block, id, scene->parameters->sequence), ONE, 0u);
         next += LANES;
     }
     uint started = count - *rays.count;

@@ -11,7 +11,7 @@ INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
     uint n = *delta.count, appended = *rays.count;
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(delta, i);
-        SampleId sample = path_sample_id(block, path.id, parameters->seed);
+        SampleId sample = path_sample_id(block, path.id, parameters->sequence);
         Surface surface = load_scattering_surface(scene, &path, sample);
         MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         Float unused, u;

@@ -168,7 +168,7 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
     uint n = *paths.count, appended = *rays.count, shadows = block.header->count[QUEUE_SHADOW];
     for (uint i = 0u; i < n; i += LANES) {
         TracedPath path = read_traced_path(paths, i);
-        SampleId sample = path_sample_id(block, path.id, parameters->seed);
+        SampleId sample = path_sample_id(block, path.id, parameters->sequence);
         Surface surface = load_scattering_surface(scene, &path, sample);
         MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
         SmoothLobes lobes = load_smooth_lobes(material_lobes(&surface, in), in, surface.wi);

@@ -55,7 +55,7 @@ INLINE Continuation class_of_shape(UInt flags, Int scattering, Rgb throughput) {
 #if HAS_LOBE_CHOICE
 // Some material has lobes of several classes, or differs between its sides: the surface decides.
 INLINE Continuation choose_class(Block block, const SceneView *scene, const TracedPath *path, Int scattering) {
-    SampleId sample = path_sample_id(block, path->id, scene->parameters->seed);
+    SampleId sample = path_sample_id(block, path->id, scene->parameters->sequence);
     Surface surface = load_scattering_surface(scene, path, sample);
     MaterialInput in = material_input(&surface, scene->surfaces.materials, scene->textures, scene->texels);
     ClassWeights w = class_weights(material_lobes(&surface, in), in, surface.wi);

@@ -1,64 +1,19 @@
-// Sample values: against an integer reference, the net property of every pair, and independence of what should not be
-// related.
+// Sample values: against an integer reference, and the net property of every pair in a pixel and in squares of pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
 #include "support/probe.h"
-#include "support/sobol_reference.h"
-#include "support/statistics.h"
+#include "support/sample_values.h"
 
 namespace wavelobe::test {
 namespace {
-
-// ---- the sampler ---------------------------------------------------------------------------------------------
-
-// Values as multiples of 2^-24, by sample.
-struct Samples {
-    std::vector<float> u1, u2;
-    Word a(std::size_t i) const { return static_cast<Word>(u1[i] * 0x1p24F); }
-    Word b(std::size_t i) const { return static_cast<Word>(u2[i] * 0x1p24F); }
-};
-
-struct Where {
-    std::vector<Word> x, y, index, pair;
-    void add(Word x_, Word y_, Word index_, Word pair_) {
-        x.push_back(x_);
-        y.push_back(y_);
-        index.push_back(index_);
-        pair.push_back(pair_);
-    }
-};
-
-Samples sample(const Where& where, Word seed, int lanes = 16) {
-    Probe probe(R"(
-        #include "sampling/sampler.h"
-        INLINE UInt load_words(global const uint *p) { return *(global const UIntUnaligned *)p; }
-        kernel void run(global const uint *x, global const uint *y, global const uint *index, global const uint *pair,
-                        global float *out1, global float *out2, uint seed) {
-            size_t i = get_global_id(0) * LANES;
-            SampleId id = sample_id(load_words(x + i), load_words(y + i), load_words(index + i), seed);
-            Float u1, u2;
-            sample_2d(id, load_words(pair + i), &u1, &u2);
-            store(out1 + i, u1);
-            store(out2 + i, u2);
-        })",
-                {.lanes = lanes, .defines = ""});
-    Where w = where;
-    const std::size_t count = w.x.size();
-    for (auto* list : {&w.x, &w.y, &w.index, &w.pair}) list->resize((count + 15) / 16 * 16);
-    const Where& padded = w;
-    Samples s{std::vector<float>(w.x.size()), std::vector<float>(w.x.size())};
-    probe.run("run", w.x.size() / static_cast<unsigned>(lanes), padded.x, padded.y, padded.index, padded.pair, s.u1, s.u2, seed);
-    s.u1.resize(count);
-    s.u2.resize(count);
-    return s;
-}
 
 Where anywhere() {
     std::mt19937 random(2);
@@ -74,12 +29,13 @@ Where anywhere() {
 
 TEST(Sampler, FollowsTheReference) {
     const Where where = anywhere();
-    for (Word seed : {0u, 1u, 0xdeadbeefu}) {
-        const Samples s = sample(where, seed);
+    for (auto [seed, digits] : {std::array{0u, 31u}, std::array{1u, 0u}, std::array{2u, 4u}, std::array{3u, 20u}, std::array{4u, 21u},
+                                std::array{5u, 24u}, std::array{6u, 30u}, std::array{0xdeadbeefu, 10u}}) {
+        const Samples s = sample(where, seed, digits);
         for (std::size_t i = 0; i < where.x.size(); ++i) {
-            const auto expected = reference_pair(where.x[i], where.y[i], where.index[i], where.pair[i], seed);
-            ASSERT_EQ(s.a(i), expected[0]) << i;
-            ASSERT_EQ(s.b(i), expected[1]) << i;
+            const auto expected = reference_pair(where.x[i], where.y[i], where.index[i], where.pair[i], seed, digits);
+            ASSERT_EQ(s.a(i), expected[0]) << i << " " << digits;
+            ASSERT_EQ(s.b(i), expected[1]) << i << " " << digits;
             // A multiple of 2^-24 below one.
             ASSERT_EQ(static_cast<float>(expected[0]) * 0x1p-24F, s.u1[i]);
             ASSERT_LT(s.u1[i], 1.0F);
@@ -92,7 +48,7 @@ TEST(Sampler, HasTheSameBitsAtEveryWidth) {
     const Where where = anywhere();
     const Samples wide = sample(where, 5);
     for (int lanes : {1, 8}) {
-        const Samples s = sample(where, 5, lanes);
+        const Samples s = sample(where, 5, 31, lanes);
         EXPECT_EQ(s.u1, wide.u1) << lanes;
         EXPECT_EQ(s.u2, wide.u2) << lanes;
     }
@@ -136,6 +92,19 @@ TEST(Sampler, BuildingBlocks) {
     }
 }
 
+// Whether the points of these samples, 2^m of them, lie one in each elementary interval.
+testing::AssertionResult is_net(const Samples& s, const std::vector<std::size_t>& samples, int m) {
+    for (int a = 0; a <= m; ++a) {
+        std::vector<bool> taken(samples.size(), false);
+        for (const std::size_t i : samples) {
+            const std::size_t cell = (s.a(i) >> (24 - a) << (m - a)) | s.b(i) >> (24 - (m - a));
+            if (taken[cell]) return testing::AssertionFailure() << "two points in one interval of 2^-" << a << " by 2^-" << m - a;
+            taken[cell] = true;
+        }
+    }
+    return testing::AssertionSuccess();
+}
+
 // The first 2^m samples, and every later aligned run of 2^m, have one point in each elementary interval.
 TEST(Sampler, EveryPairIsAScrambledNet) {
     constexpr int most = 10;
@@ -147,17 +116,52 @@ TEST(Sampler, EveryPairIsAScrambledNet) {
             const Samples s = sample(where, seed);
             for (int m = 0; m <= most; ++m) {
                 for (Word block = 0; block < 1u << (most - m); ++block) {
-                    for (int a = 0; a <= m; ++a) {
-                        std::vector<bool> taken(std::size_t{1} << m, false);
-                        for (std::size_t i = std::size_t{block} << m; i < std::size_t{block + 1} << m; ++i) {
-                            const std::size_t cell = (s.a(i) >> (24 - a) << (m - a)) | s.b(i) >> (24 - (m - a));
-                            ASSERT_FALSE(taken[cell]) << "start " << start << " m " << m << " a " << a;
-                            taken[cell] = true;
-                        }
-                    }
+                    std::vector<std::size_t> samples(std::size_t{1} << m);
+                    std::iota(samples.begin(), samples.end(), std::size_t{block} << m);
+                    ASSERT_TRUE(is_net(s, samples, m)) << "start " << start << " m " << m;
                 }
             }
         }
+    }
+}
+
+// What is gained by sharing a sequence: each aligned square of 2^k by 2^k pixels has a net of its own, by any aligned run of its samples.
+TEST(Sampler, SquaresOfPixelsAreNetsToo) {
+    constexpr Word size = 64, digits = 2, count = 1u << digits;
+    Where where;
+    for (Word y = 0; y < size; ++y) {
+        for (Word x = 0; x < size; ++x) {
+            for (Word i = 0; i < count; ++i) where.add(3 * size + x, 5 * size + y, i, 1);
+        }
+    }
+    const Samples s = sample(where, 7, digits);
+    for (Word k = 0; k <= 5; ++k) {
+        for (Word corner_y = 0; corner_y < size; corner_y += 1u << k) {
+            for (Word corner_x = 0; corner_x < size; corner_x += 1u << k) {
+                std::vector<std::size_t> samples;
+                for (Word p = 0; p < 1u << (2 * k); ++p) {
+                    const Word x = corner_x + (p & ((1u << k) - 1)), y = corner_y + (p >> k);
+                    for (Word i = 0; i < count; ++i) samples.push_back((y * size + x) * count + i);
+                }
+                ASSERT_TRUE(is_net(s, samples, static_cast<int>(2 * k + digits))) << corner_x << " " << corner_y << " " << k;
+            }
+        }
+    }
+}
+
+// No value serves twice: within a square the pixels have different runs of one sequence, and squares have different sequences.
+TEST(Sampler, SharesSequencesAmongSquares) {
+    for (Word digits : {0u, 1u, 10u, 20u, 22u, 29u, 31u}) {
+        Where where;
+        for (Word y = 0; y < 130; ++y) {
+            for (Word x = 0; x < 130; ++x) where.add(x, y, (1u << digits) - 1, 0);
+        }
+        const Samples s = sample(where, 1, digits);
+        std::vector<std::uint64_t> values;
+        for (std::size_t i = 0; i < s.u1.size(); ++i) values.push_back(std::uint64_t{s.a(i)} << 24 | s.b(i));
+        std::sort(values.begin(), values.end());
+        // Of 130^2 random pairs of 24 bits, two are the same once in two million pictures.
+        EXPECT_EQ(std::adjacent_find(values.begin(), values.end()), values.end()) << digits;
     }
 }
 
@@ -177,129 +181,6 @@ TEST(Sampler, EveryPrefixIsBalanced) {
                 ASSERT_LE(*greatest, (n >> m) + 1);
             }
         }
-    }
-}
-
-// ---- statistics over pixels, pairs and seeds ------------------------------------------------------------------------
-
-// Chance that any one of these tests of fixed samples fails although its hypothesis holds.
-constexpr double significance = 1e-3;
-
-// Two variables, independent and uniform: Pearson's test of their joint distribution on a grid.
-double joint_p_value(const std::vector<float>& u, const std::vector<float>& v, int bins) {
-    std::vector<double> counts(static_cast<std::size_t>(bins * bins), 0.0);
-    for (std::size_t i = 0; i < u.size(); ++i) {
-        const auto cell = static_cast<int>(u[i] * static_cast<float>(bins)) * bins + static_cast<int>(v[i] * static_cast<float>(bins));
-        counts[static_cast<std::size_t>(cell)] += 1;
-    }
-    const std::vector<double> expected(counts.size(), static_cast<double>(u.size()) / static_cast<double>(counts.size()));
-    return chi_square_test(counts, expected).p_value;
-}
-
-// The same sample in each pixel of a picture.
-Samples picture(Word index, Word pair, Word seed, Word shift_x = 0, Word shift_y = 0) {
-    Where where;
-    for (Word y = 0; y < 512; ++y) {
-        for (Word x = 0; x < 512; ++x) where.add(x + shift_x, y + shift_y, index, pair);
-    }
-    return sample(where, seed);
-}
-
-TEST(Sampler, IsUniformOverPixels) {
-    const double threshold = sidak_threshold(significance, 5 * 3);
-    for (auto [index, pair, seed] : {std::array{0u, 0u, 0u}, std::array{0u, 1u, 0u}, std::array{1u, 0u, 0u}, std::array{4097u, 9u, 3u},
-                                     std::array{0u, 0u, 0x80000000u}}) {
-        const Samples s = picture(index, pair, seed);
-        EXPECT_GT(joint_p_value(s.u1, s.u2, 64), threshold) << index << " " << pair << " " << seed;
-        double mean = 0, square = 0;
-        for (float u : s.u1) {
-            mean += u - 0.5;
-            square += (u - 0.5) * (u - 0.5) - 1.0 / 12;
-        }
-        const double root = std::sqrt(static_cast<double>(s.u1.size()));
-        EXPECT_GT(normal_p_value(mean / root * std::sqrt(12.0)), threshold);
-        EXPECT_GT(normal_p_value(square / root * std::sqrt(180.0)), threshold);
-    }
-}
-
-TEST(Sampler, NeighboursAreIndependent) {
-    struct Shift {
-        Word index, pair, seed, x, y;
-    };
-    const Samples here = picture(6, 4, 1);
-    const std::vector<Shift> others = {{6, 4, 1, 1, 0}, {6, 4, 1, 0, 1}, {6, 4, 1, 1, 1}, {6, 4, 1, 2, 0},  {6, 4, 1, 0, 16}, {6, 5, 1, 0, 0},
-                                       {6, 6, 1, 0, 0}, {6, 8, 1, 0, 0}, {6, 20, 1, 0, 0}, {6, 4, 2, 0, 0}, {6, 4, 3, 0, 0},  {6, 4, 0, 1, 0},
-                                       // One more pixel and one pair less must not be the same.
-                                       {6, 3, 1, 1, 0}};
-    const double threshold = sidak_threshold(significance, others.size() * 4);
-    for (const Shift& o : others) {
-        const Samples there = picture(o.index, o.pair, o.seed, o.x, o.y);
-        const auto where = testing::Message() << o.pair << " " << o.seed << " " << o.x << " " << o.y;
-        EXPECT_GT(joint_p_value(here.u1, there.u1, 32), threshold) << where;
-        EXPECT_GT(joint_p_value(here.u2, there.u2, 32), threshold) << where;
-        EXPECT_GT(joint_p_value(here.u1, there.u2, 32), threshold) << where;
-        EXPECT_GT(joint_p_value(here.u2, there.u1, 32), threshold) << where;
-    }
-}
-
-// ---- pairs of one pixel against true random scrambling -----------------------------------------------------------------
-
-constexpr Word grid_samples = 256;  // an average of one a cell of a 16 by 16 grid
-
-// Pearson's statistic of the joint distribution of two values; no test by itself, because samples of nets are not
-// independent.
-int grid_statistic(const Word* a, const Word* b) {
-    std::array<int, 256> counts{};
-    for (Word i = 0; i < grid_samples; ++i) ++counts[(a[i] >> 20 << 4) | b[i] >> 20];
-    int statistic = 0;
-    for (int count : counts) statistic += (count - 1) * (count - 1);
-    return statistic;
-}
-
-// Each pair is a net; shuffling must make two of them as unrelated as random scrambling would.
-TEST(Sampler, PairsOfAPixelAreAsUnrelatedAsRandomScramblingMakesThem) {
-    constexpr Word pixels = 12000;
-    const int edges[] = {160, 180, 190, 200, 210, 220, 230, 240, 250, 260, 270, 280, 300, 320, 340, 370, 400, 450};
-    const auto bin = [&](int statistic) { return static_cast<std::size_t>(std::upper_bound(std::begin(edges), std::end(edges), statistic) - edges); };
-    struct Values {
-        Word pair;
-        int dimension;
-    };
-    constexpr std::array<std::array<Values, 2>, 3> cases = {{{{{1, 0}, {2, 0}}}, {{{1, 1}, {2, 0}}}, {{{1, 1}, {5, 1}}}}};
-    for (const auto& both : cases) {
-        std::vector<Word> ours[2], ideal[2];
-        for (int k : {0, 1}) {
-            Where where;
-            for (Word p = 0; p < pixels; ++p) {
-                for (Word i = 0; i < grid_samples; ++i) where.add(p, 50, i, both[k].pair);
-            }
-            const Samples s = sample(where, 4);
-            for (Word p = 0; p < pixels; ++p) {
-                const std::uint64_t seed = strong_hash((std::uint64_t{p} << 8) + both[k].pair);
-                for (Word i = 0; i < grid_samples; ++i) {
-                    const std::size_t at = std::size_t{p} * grid_samples + i;
-                    ours[k].push_back(both[k].dimension == 0 ? s.a(at) : s.b(at));
-                    // Eight bits of index and the four bits that choose a cell.
-                    const Word shuffled = owen_scramble(i, seed, 7, 0);
-                    const auto dimension_seed = strong_hash(seed + 1 + static_cast<std::uint64_t>(both[k].dimension));
-                    ideal[k].push_back(owen_scramble(sobol(shuffled, both[k].dimension), dimension_seed, 31, 28) >> 8);
-                }
-            }
-        }
-        std::vector<double> our_counts(std::size(edges) + 1, 0.0), ideal_counts(std::size(edges) + 1, 0.0);
-        for (std::size_t at = 0; at < ours[0].size(); at += grid_samples) {
-            ++our_counts[bin(grid_statistic(&ours[0][at], &ours[1][at]))];
-            ++ideal_counts[bin(grid_statistic(&ideal[0][at], &ideal[1][at]))];
-        }
-        // Two samples of one distribution: the sum of (a - b)^2 / (a + b) follows the chi-square distribution.
-        double statistic = 0;
-        for (std::size_t i = 0; i < our_counts.size(); ++i) {
-            const double a = our_counts[i], b = ideal_counts[i];
-            ASSERT_GT(a + b, 5);
-            statistic += (a - b) * (a - b) / (a + b);
-        }
-        EXPECT_GT(chi_square_p_value(statistic, static_cast<double>(our_counts.size() - 1)), sidak_threshold(significance, cases.size()))
-            << both[0].pair << " " << both[1].pair;
     }
 }
 

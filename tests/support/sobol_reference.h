@@ -42,9 +42,18 @@ inline Word nested_uniform_scramble(Word x, Word seed) {
     return reversed(x);
 }
 
+// The number of a pixel in Morton order of a square of 2^side by 2^side pixels.
+inline Word morton_number(Word x, Word y, Word side) {
+    Word number = 0;
+    for (Word i = 0; i < side; ++i) number |= (x >> i & 1u) << (2 * i) | (y >> i & 1u) << (2 * i + 1);
+    return number;
+}
+
 // The two values of a pair, as multiples of 2^-24.
-inline std::array<Word, 2> reference_pair(Word x, Word y, Word index, Word pair, Word seed) {
-    const Word shuffle = mixed(mixed(mixed(mixed(seed) + x) + y) + pair * 0x9e3779b9u);
+inline std::array<Word, 2> reference_pair(Word x, Word y, Word index, Word pair, Word seed, Word digits) {
+    const Word side = digits >= 31 ? 0 : digits <= 20 ? 6 : (32 - digits) / 2;
+    const Word shuffle = mixed(mixed(mixed(mixed(seed) + (x >> side)) + (y >> side)) + pair * 0x9e3779b9u);
+    index += morton_number(x, y, side) << digits;
     const Word seed1 = next(shuffle), seed2 = next(seed1);
     const Word shuffled = nested_uniform_scramble(index, shuffle);
     return {nested_uniform_scramble(sobol(shuffled, 0), seed1) >> 8, nested_uniform_scramble(sobol(shuffled, 1), seed2) >> 8};
