@@ -109,20 +109,27 @@ int nothing_rendered() {
     return exit_interrupted;
 }
 
+void check_is_of_picture(const SampleName& sample, const Scene& scene, const std::string& option) {
+    const auto refuse = [&](const char* message, std::string hint) {
+        throw InputError(Fault{.file = "--replay " + option, .element = {}, .message = message, .hint = std::move(hint)});
+    };
+    const Film& film = scene.film;
+    const int column = sample.x - film.crop_x;
+    const int row = sample.y - film.crop_y;
+    if (column < 0 || row < 0 || column >= film.crop_width || row >= film.crop_height) {
+        refuse("the pixel is not one of the picture's", fmt::format("columns are {} to {}, rows {} to {}", film.crop_x, film.crop_x + film.crop_width - 1,
+                                                                    film.crop_y, film.crop_y + film.crop_height - 1));
+    }
+    if (sample.sample >= static_cast<std::uint32_t>(scene.sample_count)) {
+        refuse("the sample is not one of the picture's", fmt::format("samples are 0 to {}; --spp says how many a pixel has", scene.sample_count - 1));
+    }
+}
+
 // Shows one path in place of making a picture.
 int show_path(const RenderOptions& options, const Device& device, const Scene& scene, RenderSettings settings) {
     settings.driver = Driver::replay;
     settings.replayed = *parse_sample_name(options.replay);
-    const Film& film = scene.film;
-    const int column = settings.replayed.x - film.crop_x;
-    const int row = settings.replayed.y - film.crop_y;
-    if (column < 0 || row < 0 || column >= film.crop_width || row >= film.crop_height) {
-        throw InputError(Fault{.file = "--replay " + options.replay,
-                               .element = {},
-                               .message = "the pixel is not one of the picture's",
-                               .hint = fmt::format("columns are {} to {}, rows {} to {}", film.crop_x, film.crop_x + film.crop_width - 1,
-                                                   film.crop_y, film.crop_y + film.crop_height - 1)});
-    }
+    check_is_of_picture(settings.replayed, scene, options.replay);
     Renderer renderer(device, scene, settings);
     renderer.render();
     std::printf("%s", replay_text(renderer.stats().replay).c_str());

@@ -72,21 +72,20 @@ std::uint64_t expected_samples(const RenderSettings& settings, const Film& film)
     return static_cast<std::uint64_t>(settings.time_limit > 0.0 ? std::min(samples, settings.time_limit * a_second) : samples);
 }
 
-// How many binary digits number the samples of a pixel, those of emission rays among them.
-std::uint32_t sample_digits(const RenderSettings& settings, int emission_rays) {
+// How many binary digits number the samples of a pixel.
+std::uint32_t sample_digits(const RenderSettings& settings) {
     if (has_open_end(settings)) return SEQUENCE_A_PIXEL;
-    const auto digits = [](int count) { return std::bit_width(static_cast<unsigned>(std::max(count, 1) - 1)); };
-    return std::min(static_cast<std::uint32_t>(digits(settings.samples_per_pixel) + digits(emission_rays)), SEQUENCE_A_PIXEL);
+    return static_cast<std::uint32_t>(std::bit_width(static_cast<unsigned>(std::max(settings.samples_per_pixel, 1) - 1)));
 }
 
 // The scene as the device has it, with what the settings ask of its kernels.
 DeviceScene device_scene(const Scene& scene, const RenderSettings& settings) {
     DeviceScene data = flatten_scene(scene, settings.estimator);
+    data.parameters.sequence = {settings.seed, sample_digits(settings)};
     data.parameters.layer_film_step = layer_film_step(settings);
     data.features.independent_samples = settings.sampler == Sampler::independent;
     set_photon_count(data, expected_samples(settings, scene.film));
     if (settings.emission_rays) data.features.emission_rays = *settings.emission_rays;
-    data.parameters.sequence = {settings.seed, sample_digits(settings, data.features.emission_rays)};
     data.features.caustics = data.features.caustics && settings.guide_caustics;
     data.features.smooth_terminator = settings.smooth_terminator && data.features.smooth_normals;
     data.features.error_estimate = settings.target_error > 0.0;

@@ -20,9 +20,13 @@
 #define PAIR_SURVIVAL 3u  // which class of lobes; Russian roulette
 #define PAIR_BLEND 4u     // which of two materials
 
+// How many binary digits number `count` things.
+INLINE uint digits_of(uint count) { return 32u - clz(count - 1u); }
+
 // Of `parts` samples in place of each of the path's pixel, number `part` of those in place of the path's own.
 INLINE SampleId path_sample_part(Block block, UInt id, struct SampleSequence sequence, UInt part, uint parts) {
     UInt sample = path_sample(block, id);
+    sequence.digits = min(sequence.digits + digits_of(parts), SEQUENCE_A_PIXEL);
 #if HAS_ERROR_ESTIMATE
     // Two pictures that share no random number.
     sample = HALF_INDEX(sample);

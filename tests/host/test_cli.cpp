@@ -107,11 +107,12 @@ TEST_F(Program, RefusesWrongCommandLines) {
     expect_refused({"render", "scene.xml", "-o", "a.exr", "--crop", "8,8,8,9"}, "at least one pixel");
     expect_refused({"render", "scene.xml", "--replay", "1,2"}, "\"1,2\" is not of the form X,Y,S");
     expect_refused({"render", "scene.xml", "--replay", "64,2,0"}, "columns are 0 to 63, rows 0 to 47");
+    expect_refused({"render", "scene.xml", "--replay", "63,2,4", "--spp", "4"}, "samples are 0 to 3; --spp says how many a pixel has");
     EXPECT_FALSE(fs::exists(path("a.exr")));
 }
 
 TEST_F(Program, ReplaysAPath) {
-    const Result result = run({"render", "scene.xml", "--replay", "32,24,1", "--quiet"});
+    const Result result = run({"render", "scene.xml", "--replay", "32,24,2", "--quiet"});
     EXPECT_EQ(result.code, exit_ok) << result.errors;
     EXPECT_EQ(result.output.rfind("vertex 0: scatter_diffuse, hit shape 0 primitive ", 0), 0U) << result.output;
     EXPECT_NE(result.output.find("\n  light sample: intersect_shadow, from shape 0 "), std::string::npos) << result.output;
