@@ -24,6 +24,19 @@ void mark_masked(Bvh& bvh, const DeviceScene& scene) {
     for (std::uint32_t& entry : bvh.analytic_order) mark(entry, scene.triangles.size() + entry);
 }
 
+FewSlot few_slot(const DeviceScene& scene, const TriangleBlock& block, std::size_t column) {
+    FewSlot slot{};
+    for (std::size_t row = 0; row < std::size(slot.corners); ++row) slot.corners[row] = block.vertex[row][column];
+    const auto corner = [&](int i) { return glm::dvec3(slot.corners[3 * i], slot.corners[3 * i + 1], slot.corners[3 * i + 2]); };
+    const glm::dvec3 cross = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+    if (const double length = glm::length(cross); length > 0.0) slot.normal = packed(glm::vec3(cross / length));
+    slot.primitive = block.primitive[column] & ~PRIMITIVE_MASKED;
+    if (slot.primitive >= scene.primitive_shapes.size()) return slot;
+    slot.shape = scene.primitive_shapes[slot.primitive];
+    slot.front_material = scene.shapes[slot.shape].front_material;
+    return slot;
+}
+
 }  // namespace
 
 Bvh build_scene_bvh(DeviceScene& scene, int threads, std::optional<BvhQuality> chosen, const BuildProgress& progress) {
@@ -127,10 +140,8 @@ void DeviceBuffers::add_few(const DeviceScene& scene, const Bvh& bvh, const FewT
         add("few_corners", few.corners);
         add("few_numbers", few.numbers);
     }
-    std::vector<float> slots(bvh.blocks.size() * BVH_WIDTH * ROW_WORDS);
-    for (std::size_t slot = 0; slot < bvh.blocks.size() * BVH_WIDTH; ++slot) {
-        for (std::size_t row = 0; row < 9; ++row) slots[slot * ROW_WORDS + row] = bvh.blocks[slot / BVH_WIDTH].vertex[row][slot % BVH_WIDTH];
-    }
+    std::vector<FewSlot> slots;
+    for (std::size_t slot = 0; slot < bvh.blocks.size() * BVH_WIDTH; ++slot) slots.push_back(few_slot(scene, bvh.blocks[slot / BVH_WIDTH], slot % BVH_WIDTH));
     add("few_slots", slots);
 }
 

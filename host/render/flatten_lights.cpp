@@ -95,6 +95,8 @@ void LightFlattener::add_planar(const TriangleMesh& mesh, LightIndex kind, const
     light.edge2 = packed(e2);
     light.normal = packed(glm::vec3(glm::normalize(cross)));
     light.inverse_area = static_cast<float>(1.0 / area);
+    light.inverse_length1 = static_cast<float>(1.0 / glm::length(glm::dvec3(e1)));
+    light.inverse_length2 = static_cast<float>(1.0 / glm::length(glm::dvec3(e2)));
     const glm::vec2 barycentric[3] = {{0, 0}, {1, 0}, {0, 1}};
     for (int i = 0; i < 3; ++i) {
         const glm::vec2 uv = radiance.uvs.empty() ? barycentric[i] : radiance.uvs[t[i]];

@@ -17,7 +17,7 @@ INLINE LightSample analytic_light_sample(LightInput in, Vec3 reference, Vec3 obj
 #if HAS_TEXTURED_EMITTERS
     analytic_uv(m.kind, object, &u, &v);
 #endif
-    return area_light_sample(in, reference, p.position, p.error, p.normal, u, v);
+    return area_light_sample(in, reference, p.position, p.error, p.normal, u, v, ZERO);
 }
 
 #endif

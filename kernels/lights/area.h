@@ -4,19 +4,18 @@
 
 #include "lights/radiance.h"
 
-// Solid angle density, as seen from a distance, of points spread evenly over an area: distance^2 / (|cos| area).
+// Points spread evenly over an area have, as seen from a distance, the solid angle density distance^2 / (|cos| area).
+
 // Zero where the surface is seen edge-on or touched: there no density is finite, and no light arrives.
-INLINE Float area_light_pdf(Float distance_squared, Float cosine, Float inverse_area) {
-    Float pdf = distance_squared * inverse_area / fabs(cosine);
-    return SELECT(pdf < INFINITY, pdf, ZERO);
-}
+INLINE Float finite_density(Float pdf) { return SELECT(pdf < INFINITY, pdf, ZERO); }
 
 INLINE Float area_light_hit_pdf(LightInput in, Vec3 direction, Float t, Vec3 normal) {
-    return area_light_pdf(t * t, dot3(direction, normal), light_field(in, inverse_area));
+    return finite_density(t * t * light_field(in, inverse_area) / fabs(dot3(direction, normal)));
 }
 
-// The sample that a point on the surface makes; `u`, `v` are its texture coordinates.
-INLINE LightSample area_light_sample(LightInput in, Vec3 reference, Vec3 point, Vec3 error, Vec3 normal, Float u, Float v) {
+// The sample that a point on the surface makes; `u`, `v` are its texture coordinates. `solid_angle`: over which directions are spread
+// evenly; zero: points are, over the area.
+INLINE LightSample area_light_sample(LightInput in, Vec3 reference, Vec3 point, Vec3 error, Vec3 normal, Float u, Float v, Float solid_angle) {
     Vec3 to_point = sub(point, reference);
     Float distance_squared = length_squared(to_point);
     LightSample s;
@@ -26,7 +25,9 @@ INLINE LightSample area_light_sample(LightInput in, Vec3 reference, Vec3 point, 
     s.error = error;
     s.normal = normal;
     s.at_infinity = !TRUE_MASK;
-    s.pdf = area_light_pdf(distance_squared, cosine, light_field(in, inverse_area));
+    Int by_area = solid_angle == 0.0f;
+    Float pdf = SELECT(by_area, distance_squared * light_field(in, inverse_area), ONE) / SELECT(by_area, fabs(cosine), solid_angle);
+    s.pdf = finite_density(pdf);
     s.radiance = select3((cosine > 0.0f) & (s.pdf > 0.0f), light_radiance(in, u, v), vec3_all(ZERO));
     s.delta = !TRUE_MASK;
     return s;

@@ -63,19 +63,20 @@ typedef struct {
 // Where a triangle, parallelogram or rectangle lies.
 typedef struct {
     Vec3 position, edge1, edge2, normal;
-    Float inverse_area;
+    Float inverse_area, inverse_length1, inverse_length2;
 } PlanarLight;
 
 INLINE PlanarLight planar_light(LightInput in) {
 #if LIGHT_COUNT == 1 && !HAS_UNSAMPLED_EMITTERS
     PlanarLight p = {light_vector(in, position), light_vector(in, edge1), light_vector(in, edge2), light_vector(in, normal),
-                     light_field(in, inverse_area)};
+                     light_field(in, inverse_area), light_field(in, inverse_length1), light_field(in, inverse_length2)};
 #else
     Rows r;
     gather_rows((global const float *)in.lights + WORD_OFFSET(Light, position), in.light * RECORD_WORDS(Light), &r);
 #define PLANAR_FIELD(name) r.word[WORD_OFFSET(Light, name) - WORD_OFFSET(Light, position)]
 #define PLANAR_VECTOR(name) vec3(PLANAR_FIELD(name.x), PLANAR_FIELD(name.y), PLANAR_FIELD(name.z))
-    PlanarLight p = {PLANAR_VECTOR(position), PLANAR_VECTOR(edge1), PLANAR_VECTOR(edge2), PLANAR_VECTOR(normal), PLANAR_FIELD(inverse_area)};
+    PlanarLight p = {PLANAR_VECTOR(position), PLANAR_VECTOR(edge1), PLANAR_VECTOR(edge2), PLANAR_VECTOR(normal),
+                     PLANAR_FIELD(inverse_area), PLANAR_FIELD(inverse_length1), PLANAR_FIELD(inverse_length2)};
 #undef PLANAR_VECTOR
 #undef PLANAR_FIELD
 #endif

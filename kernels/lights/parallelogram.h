@@ -6,7 +6,7 @@
 #include "lights/triangle.h"
 
 INLINE LightSample parallelogram_sample_light(LightInput in, Vec3 reference, Float u1, Float u2) {
-    return planar_light_sample(in, reference, u1, u2, planar_light_uv(in, 0u, u1, u2), planar_light_uv(in, 1u, u1, u2));
+    return planar_light_sample(in, reference, u1, u2, ZERO);
 }
 
 INLINE Float parallelogram_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {

@@ -13,31 +13,46 @@
 // The rectangle as seen from the reference point: it spans [x0, x1] x [y0, y1] at height z0 <= 0 below it.
 typedef struct {
     Float x0, x1, y0, y1, z0;
+    Float inverse_width, inverse_height;
     Float b0, b1;      // z of the normals of the planes through the reference and the edges at y0, y1
+    Float slant;       // root of 1 - b0^2
     Float first, last; // sums of arcs: at x0 and, negative, at x1
     Float solid_angle;
 } SphericalRectangle;
 
-// x / sqrt(x^2 + z^2), which rounding shall not take beyond 1.
-INLINE Float sine_of_slope(Float x, Float z2) {
-    Float s = x / sqrt(madd(x, x, z2));
-    return LESSER(GREATER(s, -ONE), ONE);
+typedef struct {
+    Float first, second;
+    Float inverse_distance; // of the first
+} Slopes;
+
+// x / sqrt(x^2 + z^2) for two x: one division serves both. Squares neither overflow nor vanish where their roots' product does not.
+INLINE Slopes sines_of_slopes(Float x0, Float x1, Float z2) {
+    Float d0 = sqrt(madd(x0, x0, z2)), d1 = sqrt(madd(x1, x1, z2));
+    Float inverse = 1.0f / (d0 * d1);
+    Slopes s = {x0 * (inverse * d1), x1 * (inverse * d0), inverse * d1};
+    return s;
 }
+
+// Which rounding shall not take beyond 1.
+INLINE Float as_sine(Float s) { return LESSER(GREATER(s, -ONE), ONE); }
 
 INLINE SphericalRectangle spherical_rectangle(LightInput in, Vec3 reference) {
     PlanarLight l = planar_light(in);
     Vec3 e1 = l.edge1, e2 = l.edge2, to_corner = sub(l.position, reference);
-    Float width = sqrt(length_squared(e1)), height = sqrt(length_squared(e2));
     SphericalRectangle r;
-    r.x0 = dot3(to_corner, e1) / width;
-    r.y0 = dot3(to_corner, e2) / height;
+    r.inverse_width = l.inverse_length1;
+    r.inverse_height = l.inverse_length2;
+    r.x0 = dot3(to_corner, e1) * r.inverse_width;
+    r.y0 = dot3(to_corner, e2) * r.inverse_height;
     r.z0 = -fabs(dot3(to_corner, l.normal));
-    r.x1 = r.x0 + width;
-    r.y1 = r.y0 + height;
+    r.x1 = madd(length_squared(e1), r.inverse_width, r.x0);
+    r.y1 = madd(length_squared(e2), r.inverse_height, r.y0);
     Float z2 = r.z0 * r.z0;
-    r.b0 = -sine_of_slope(r.y0, z2);
-    r.b1 = sine_of_slope(r.y1, z2);
-    Float a0 = -sine_of_slope(r.x0, z2), a1 = sine_of_slope(r.x1, z2);
+    Slopes y = sines_of_slopes(r.y0, r.y1, z2), x = sines_of_slopes(r.x0, r.x1, z2);
+    r.b0 = -as_sine(y.first);
+    r.b1 = as_sine(y.second);
+    r.slant = -r.z0 * y.inverse_distance;
+    Float a0 = -as_sine(x.first), a1 = as_sine(x.second);
     r.first = lane_asin(a0 * r.b0) + lane_asin(a0 * r.b1);
     r.last = lane_asin(a1 * r.b0) + lane_asin(a1 * r.b1);
     r.solid_angle = r.first + r.last;
@@ -47,20 +62,21 @@ INLINE SphericalRectangle spherical_rectangle(LightInput in, Vec3 reference) {
 // Where the solid angle is what is sampled; not from a point in the plane, where it is not a number or zero.
 INLINE Int sampled_by_solid_angle(SphericalRectangle r) { return r.solid_angle >= LEAST_SOLID_ANGLE; }
 
-// Shares of the edges at which the sample (u1, u2) lies.
+// Shares of the edges at which the sample (u1, u2) lies. With f = (b0 cos + b1) / sin and c = 1 / sqrt(f^2 + b0^2), the paper's x is
+// z0 c / sqrt(1 - c^2); multiplied out, nothing cancels but at the edges, and most divisions go.
 INLINE Vec2 sample_spherical_rectangle(SphericalRectangle r, Float u1, Float u2) {
     Float sine, cosine;
     lane_sin_cos(madd(u1, r.solid_angle, -r.first), &sine, &cosine);
-    Float f = madd(cosine, r.b0, r.b1) / sine;
-    Float c = LESSER(1.0f / sqrt(madd(f, f, r.b0 * r.b0)), ONE);
-    Float x = copy_sign(c, f) * -r.z0 / sqrt(GREATER(madd(-c, c, ONE), (Float)0x1p-40f));
+    Float n = madd(cosine, r.b0, r.b1);
+    Float square = madd(-r.slant, sine, n) * madd(r.slant, sine, n);
+    Float x = copy_sign(r.z0 * sine, n * sine) / sqrt(GREATER(square, (Float)0x1p-80f));
     x = LESSER(GREATER(x, r.x0), r.x1);
     Float d2 = madd(x, x, r.z0 * r.z0);
-    Float h0 = sine_of_slope(r.y0, d2), h1 = sine_of_slope(r.y1, d2);
-    Float h = madd(u2, h1 - h0, h0);
+    Slopes s = sines_of_slopes(r.y0, r.y1, d2);
+    Float h = madd(u2, s.second - s.first, s.first);
     Float y = h * sqrt(d2 / GREATER(madd(-h, h, ONE), (Float)0x1p-40f));
     y = LESSER(GREATER(y, r.y0), r.y1);
-    Vec2 at = {(x - r.x0) / (r.x1 - r.x0), (y - r.y0) / (r.y1 - r.y0)};
+    Vec2 at = {LESSER((x - r.x0) * r.inverse_width, ONE), LESSER((y - r.y0) * r.inverse_height, ONE)};
     return at;
 }
 
@@ -68,9 +84,7 @@ INLINE LightSample rectangle_sample_light(LightInput in, Vec3 reference, Float u
     SphericalRectangle r = spherical_rectangle(in, reference);
     Int even = sampled_by_solid_angle(r);
     Vec2 at = sample_spherical_rectangle(r, u1, u2);
-    LightSample s = parallelogram_sample_light(in, reference, SELECT(even, at.x, u1), SELECT(even, at.y, u2));
-    s.pdf = SELECT(even & (s.pdf > 0.0f), 1.0f / r.solid_angle, s.pdf);
-    return s;
+    return planar_light_sample(in, reference, SELECT(even, at.x, u1), SELECT(even, at.y, u2), SELECT(even, r.solid_angle, ZERO));
 }
 
 INLINE Float rectangle_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {

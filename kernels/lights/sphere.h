@@ -72,7 +72,7 @@ INLINE LightSample sphere_sample_light(LightInput in, Vec3 reference, Float u1, 
 #if HAS_TEXTURED_EMITTERS
     analytic_uv(m.kind, map_to_object(m, sub(p.position, m.origin)), &u, &v);
 #endif
-    LightSample s = area_light_sample(in, reference, p.position, p.error, p.normal, u, v);
+    LightSample s = area_light_sample(in, reference, p.position, p.error, p.normal, u, v, ZERO);
     s.direction = select3(outward, direction, s.direction);
     s.radiance = select3(outward, select3(c.pdf > 0.0f, light_radiance(in, u, v), vec3_all(ZERO)), s.radiance);
     s.pdf = SELECT(outward, c.pdf, s.pdf);

@@ -91,9 +91,7 @@ INLINE LightSample spherical_triangle_sample_light(LightInput in, Vec3 reference
         at.x = SELECT(even, seen.x, at.x);
         at.y = SELECT(even, seen.y, at.y);
     }
-    LightSample s = planar_light_sample(in, reference, at.x, at.y, planar_light_uv(in, 0u, at.x, at.y), planar_light_uv(in, 1u, at.x, at.y));
-    s.pdf = SELECT(even & (s.pdf > 0.0f), 1.0f / t.solid_angle, s.pdf);
-    return s;
+    return planar_light_sample(in, reference, at.x, at.y, SELECT(even, t.solid_angle, ZERO));
 }
 
 INLINE Float spherical_triangle_pdf(LightInput in, Vec3 reference, Vec3 direction, Float t, Vec3 normal) {

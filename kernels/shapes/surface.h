@@ -98,8 +98,32 @@ INLINE Corners gather_corners(global const float *p, UInt i) {
     return t;
 }
 
+// A triangle that was hit.
+typedef struct {
+    Corners corners;
+    Vec3 normal; // unit
+    UInt primitive, shape;
+    UInt material; // of the front
+} SlotTriangle;
+
 #if HAS_FEW_TRIANGLES
-INLINE Corners triangle_corners(SurfaceView s, UInt slot) { return gather_corners(s.few_slots, slot * ROW_WORDS); }
+INLINE SlotTriangle triangle_of_slot(SurfaceView s, UInt slot) {
+    Rows r;
+    gather_rows((global const float *)s.few_slots, slot * ROW_WORDS, &r);
+#define SLOT_WORD(name) r.word[WORD_OFFSET(FewSlot, name)]
+    SlotTriangle t;
+    t.corners.a = vec3(r.word[0], r.word[1], r.word[2]);
+    t.corners.b = vec3(r.word[3], r.word[4], r.word[5]);
+    t.corners.c = vec3(r.word[6], r.word[7], r.word[8]);
+    t.normal = vec3(SLOT_WORD(normal.x), SLOT_WORD(normal.y), SLOT_WORD(normal.z));
+    t.primitive = as_UInt(SLOT_WORD(primitive));
+    t.shape = as_UInt(SLOT_WORD(shape));
+    t.material = as_UInt(SLOT_WORD(front_material));
+#undef SLOT_WORD
+    return t;
+}
+
+INLINE Corners triangle_corners(SurfaceView s, UInt slot) { return triangle_of_slot(s, slot).corners; }
 #else
 INLINE Vec3 block_vertex(SurfaceView s, UInt word, uint vertex) {
     global const float *row = s.triangle_blocks + vertex * 24u;
@@ -109,6 +133,16 @@ INLINE Vec3 block_vertex(SurfaceView s, UInt word, uint vertex) {
 INLINE Corners triangle_corners(SurfaceView s, UInt slot) {
     UInt word = block_word(slot);
     Corners t = {block_vertex(s, word, 0u), block_vertex(s, word, 1u), block_vertex(s, word, 2u)};
+    return t;
+}
+
+INLINE SlotTriangle triangle_of_slot(SurfaceView s, UInt slot) {
+    SlotTriangle t;
+    t.corners = triangle_corners(s, slot);
+    t.normal = normalize_any_scale(cross3(sub(t.corners.b, t.corners.a), sub(t.corners.c, t.corners.a)));
+    t.primitive = PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
+    t.shape = gather_uint(s.primitive_shapes, t.primitive);
+    t.material = GATHER_UINT_FIELD(s.shapes, Shape, t.shape, front_material);
     return t;
 }
 #endif
@@ -141,20 +175,22 @@ INLINE void load_tangent(SurfaceView s, UInt first, Float wa, Float wb, Float wc
 #define NORMAL_WORDS 9u
 #endif
 
-INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt first_primitive, Surface *out) {
-    Corners corners = triangle_corners(s, slot);
-    Vec3 a = corners.a, b = corners.b, c = corners.c;
+INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, Surface *out) {
+    SlotTriangle hit = triangle_of_slot(s, slot);
+    Vec3 a = hit.corners.a, b = hit.corners.b, c = hit.corners.c;
+    out->primitive = hit.primitive;
+    out->shape = hit.shape;
+    out->material = hit.material;
     Float wb = p->u, wc = p->v, wa = 1.0f - wb - wc;
     out->position = interpolate(a, b, c, wa, wb, wc);
     out->error = scale(interpolate(absolute(a), absolute(b), absolute(c), fabs(wa), fabs(wb), fabs(wc)), (Float)GAMMA(7));
-    Vec3 e1 = sub(b, a), e2 = sub(c, a);
-    out->normal = normalize_any_scale(cross3(e1, e2));
+    out->normal = hit.normal;
     out->frame.n = out->normal;
 #if HAS_SMOOTH_TERMINATOR
     out->rise = no_rise();
 #endif
 #if HAS_SMOOTH_NORMALS || HAS_UVS || HAS_VERTEX_COLORS
-    UInt triangle = out->primitive - first_primitive;
+    UInt triangle = out->primitive - GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_primitive);
 #endif
 #if HAS_SMOOTH_NORMALS
     UInt first_normal = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, first_normal);
@@ -195,8 +231,8 @@ INLINE void load_triangle(SurfaceView s, const TracedPath *p, UInt slot, UInt fi
     triangle_uvs(s.uvs, second, triangle, wa, wb, wc, &out->second_u, &out->second_v);
 #endif
 #if HAS_TANGENTS
-    out->dp_du = e1;
-    out->dp_dv = e2;
+    out->dp_du = sub(b, a);
+    out->dp_dv = sub(c, a);
 #if HAS_UVS
     triangle_tangents(s.uvs, first_uv, triangle, out->normal, &out->dp_du, &out->dp_dv);
 #endif
@@ -216,6 +252,9 @@ INLINE void load_analytic(SurfaceView s, const TracedPath *p, Int analytic, Surf
     direction = select3(m.placed, vector_to_instance(&m, direction), direction);
 #endif
     AnalyticHit h = analytic_hit(s.analytics, index, origin, direction, p->t);
+    out->primitive = SELECT(analytic, index + (UInt)s.triangle_count, out->primitive);
+    out->shape = gather_uint(s.primitive_shapes, out->primitive);
+    out->material = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
     out->position = select3(analytic, h.position, out->position);
     out->error = select3(analytic, h.error, out->error);
     out->normal = select3(analytic, h.normal, out->normal);
@@ -258,7 +297,6 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
 #if HAS_SMOOTH_TERMINATOR
     out->rise.front = select3(behind, out->rise.behind, out->rise.front);
 #endif
-    UInt front = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, front_material);
 #if HAS_UNLIKE_SIDES
     UInt back = GATHER_UINT_FIELD(s.shapes, Shape, out->shape, back_material);
     Int from_back = behind;
@@ -267,9 +305,7 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     Int culled = (GATHER_UINT_FIELD(s.shapes, Shape, out->shape, flags) & (UInt)SHAPE_CULLED_BEHIND) != (UInt)0u;
     from_back = SELECT(culled, (p->pdf < 0.0f) & (dot3(out->normal, p->direction) > 0.0f), behind);
 #endif
-    out->material = SELECT(from_back, back, front);
-#else
-    out->material = front;
+    out->material = SELECT(from_back, back, out->material);
 #endif
 #if HAS_TRANSMISSION || HAS_NESTING
     UInt known = SELECT(out->material == (UInt)WAVELOBE_NONE, (UInt)0u, out->material);
@@ -282,18 +318,15 @@ INLINE void choose_side(SurfaceView s, const TracedPath *p, Surface *out) {
     out->wi.z = SELECT(turned, -out->wi.z, out->wi.z);
 }
 
-// All but the side that is seen: no material, and the frame as the surface has it.
+// All but the side that is seen: the material is that of the front, and the frame as the surface has it.
 INLINE Surface load_geometry(SurfaceView s, const TracedPath *p) {
     Surface out;
-    out.primitive = primitive_of_hit(s, p->hit);
-    out.shape = gather_uint(s.primitive_shapes, out.primitive);
-    UInt first_primitive = GATHER_UINT_FIELD(s.shapes, Shape, out.shape, first_primitive);
 #if HAS_ANALYTIC
     Int analytic = (p->hit & (UInt)HIT_ANALYTIC) != (UInt)0u;
-    load_triangle(s, p, SELECT(analytic, (UInt)0u, p->hit), first_primitive, &out);
+    load_triangle(s, p, SELECT(analytic, (UInt)0u, p->hit), &out);
     if (any_lane(analytic)) load_analytic(s, p, analytic, &out);
 #else
-    load_triangle(s, p, p->hit, first_primitive, &out);
+    load_triangle(s, p, p->hit, &out);
 #endif
 #if HAS_INSTANCES
     place_surface(s, p->instance, &out);

@@ -11,7 +11,7 @@
 typedef struct {
     global const float *triangle_blocks;  // TriangleBlock
 #if HAS_FEW_TRIANGLES
-    global const float *few_slots; // corners of the triangle in each slot, ROW_WORDS a slot
+    global const struct FewSlot *few_slots; // of the triangle in each slot
 #endif
     global const uint *primitive_shapes;  // shape of each triangle, then of each analytic shape
     global const struct Shape *shapes;
@@ -35,7 +35,7 @@ typedef struct {
 } SurfaceView;
 
 #if HAS_FEW_TRIANGLES
-#define FEW_SLOTS_PARAMETER , global const float *few_slots
+#define FEW_SLOTS_PARAMETER , global const struct FewSlot *few_slots
 #define FEW_SLOTS_ARGUMENT , few_slots
 #else
 #define FEW_SLOTS_PARAMETER

@@ -44,6 +44,16 @@ struct FewTriangle {
 };
 WAVELOBE_CHECK_SIZE(FewTriangle, 24);
 
+// What stages want to know of the triangle that a ray hit, by its slot: one row of words (core/rows.h).
+struct FewSlot {
+    float corners[9];
+    struct Packed3 normal; // unit
+    Uint32 primitive, shape;
+    Uint32 front_material; // of the shape
+    Uint32 unused;
+};
+WAVELOBE_CHECK_SIZE(FewSlot, 4 * ROW_WORDS);
+
 #define FEW_TRIANGLES_MAX 96u // a multiple of LANES
 #define FEW_VERTICES_MAX 128u
 

@@ -14,6 +14,7 @@ struct Light {
     struct Packed3 edge2;         // to the third vertex
     struct Packed3 normal;        // unit, on the emitting side
     float inverse_area;           // 1 / m^2
+    float inverse_length1, inverse_length2; // of the edges, 1 / m
     float uv[6];                  // of the three vertices (texture coordinates of a textured emitter)
     Uint32 analytic;              // index of its analytic shape
     float cos_cutoff, cos_beam;   // spot
@@ -22,7 +23,7 @@ struct Light {
     Uint32 place;                 // of its leaf in the light tree: LIGHT_PLACE
     Uint32 triangle;              // number of its triangle or the first of two; WAVELOBE_NONE: of another kind
 };
-WAVELOBE_CHECK_SIZE(Light, 128);
+WAVELOBE_CHECK_SIZE(Light, 136);
 
 #define LIGHT_CHILDREN 8
 

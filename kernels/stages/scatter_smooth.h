@@ -56,8 +56,7 @@ INLINE uint sample_direct_light(uint stage, Block block, uint at, const SceneVie
     value.pdf = GUIDED_PDF(scene, value.pdf, light.direction);
     value.f_cos = scale(value.f_cos, MAPPED_SHARE(surface, light.direction));
     Float pdf = choice * light.pdf;
-    Float weight = SELECT(light.delta, ONE, light_sample_weight(pdf, value.pdf));
-    Rgb contribution = scale(mul(mul(path->throughput, value.f_cos), light.radiance), weight / pdf);
+    Rgb contribution = scale(mul(mul(path->throughput, value.f_cos), light.radiance), light_sample_share(pdf, value.pdf, light.delta));
     broken = mark_broken(block, stage, path->id, shines, finiteness3(contribution));
     Int contributes = shines & !broken & (max_component(contribution) > 0.0f);
     uint bits = lane_bits(contributes);

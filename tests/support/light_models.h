@@ -43,6 +43,8 @@ inline Light planar_light(const glm::vec3& p, const glm::vec3& e1, const glm::ve
     light.edge2 = packed(e2);
     light.normal = packed(glm::vec3(glm::normalize(cross)));
     light.inverse_area = static_cast<float>(1.0 / (area_factor * glm::length(cross)));
+    light.inverse_length1 = static_cast<float>(1.0 / glm::length(glm::dvec3(e1)));
+    light.inverse_length2 = static_cast<float>(1.0 / glm::length(glm::dvec3(e2)));
     return light;
 }
 
