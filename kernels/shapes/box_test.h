@@ -46,13 +46,18 @@ INLINE void choose_rows(BoxTest *b, uint sx, uint sy, uint sz) {
     b->near_row_z = (4u + sz) * NODE_ROW_BYTES, b->far_row_z = (5u - sz) * NODE_ROW_BYTES;
 }
 
-INLINE BoxTest box_test(const Ray *r) {
+// Of one ray, by its origin and the reciprocal of its direction.
+INLINE BoxTest box_test_of(float ox, float oy, float oz, float x, float y, float z) {
     BoxTest b;
-    b.near_ox = b.far_ox = r->ox, b.near_oy = b.far_oy = r->oy, b.near_oz = b.far_oz = r->oz;
-    b.near_x = reciprocal_direction(r->dx), b.near_y = reciprocal_direction(r->dy), b.near_z = reciprocal_direction(r->dz);
+    b.near_ox = b.far_ox = ox, b.near_oy = b.far_oy = oy, b.near_oz = b.far_oz = oz;
+    b.near_x = x, b.near_y = y, b.near_z = z;
     b.far_x = b.near_x * FAR_WIDENING, b.far_y = b.near_y * FAR_WIDENING, b.far_z = b.near_z * FAR_WIDENING;
     choose_rows(&b, b.near_x < 0.0f ? 1u : 0u, b.near_y < 0.0f ? 1u : 0u, b.near_z < 0.0f ? 1u : 0u);
     return b;
+}
+
+INLINE BoxTest box_test(const Ray *r) {
+    return box_test_of(r->ox, r->oy, r->oz, reciprocal_direction(r->dx), reciprocal_direction(r->dy), reciprocal_direction(r->dz));
 }
 
 // Distances at which the eight boxes of a node are entered and left along each axis.

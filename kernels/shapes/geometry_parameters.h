@@ -58,41 +58,21 @@ typedef FewTriangles Geometry;
 #define GEOMETRY_VIEW \
     {bvh_nodes, (global const uchar *)triangle_blocks ANALYTIC_ORDER_ARGUMENT OPACITY_ARGUMENT INSTANCES_ARGUMENT}
 
+// The rays of the slots from i on; the others are the queue's fields for their parts.
+INLINE void load_group(RayGroup *out, Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint from, uint path,
+                       uint i) {
+    *(Float *)out->ox.value = read_field(q, origin, i);
+    *(Float *)out->oy.value = read_field(q, origin + 1u, i);
+    *(Float *)out->oz.value = read_field(q, origin + 2u, i);
+    *(Float *)out->dx.value = read_field(q, direction, i);
+    *(Float *)out->dy.value = read_field(q, direction + 1u, i);
+    *(Float *)out->dz.value = read_field(q, direction + 2u, i);
+    *(Float *)out->limit.value = read_field(q, limit, i);
+    *(UInt *)out->from = read_uint(q, from, i);
 #if HAS_MASKS
-INLINE uint slot_key(Geometry g, Block block, Queue q, uint direction, uint path, uint i) {
-    Vec3 d = vec3((Float)slot_float(q, direction, i), (Float)slot_float(q, direction + 1u, i),
-                  (Float)slot_float(q, direction + 2u, i));
-    return FIRST_LANE(ray_key(g.opacity, block, (UInt)slot_uint(q, path, i), d));
-}
+    *(UInt *)out->key = ray_key(g.opacity, block, read_uint(q, path, i), read_vec3(q, direction, i));
 #endif
-
-// The ray of slot i; the others are the queue's fields for its parts.
-INLINE void load_ray(Ray *out, Geometry g, Block block, Queue q, uint origin, uint direction, uint limit, uint from, uint path,
-                     uint i) {
-    Ray r = {
-        slot_float(q, origin, i),    slot_float(q, origin + 1u, i),    slot_float(q, origin + 2u, i),
-        slot_float(q, direction, i), slot_float(q, direction + 1u, i), slot_float(q, direction + 2u, i),
-        slot_float(q, limit, i),     slot_uint(q, from, i),
-#if HAS_MASKS
-        slot_key(g, block, q, direction, path, i),
-#endif
-    };
-    *out = r;
 }
-
-#if HAS_PACKETS
-// The rays of the slots from i on; fields as above.
-INLINE void load_group(RayGroup *g, Queue q, uint origin, uint direction, uint limit, uint from, uint i) {
-    *(Float *)g->ox.value = read_field(q, origin, i);
-    *(Float *)g->oy.value = read_field(q, origin + 1u, i);
-    *(Float *)g->oz.value = read_field(q, origin + 2u, i);
-    *(Float *)g->dx.value = read_field(q, direction, i);
-    *(Float *)g->dy.value = read_field(q, direction + 1u, i);
-    *(Float *)g->dz.value = read_field(q, direction + 2u, i);
-    *(Float *)g->limit.value = read_field(q, limit, i);
-    *(UInt *)g->from = read_uint(q, from, i);
-}
-#endif
 #endif
 
 #endif

@@ -11,7 +11,7 @@
 #if HAS_PACKETS
 
 #define LEAST_PACKET (LANES / 2u) // fewer rays are not worth the set-up
-#define MOST_SPREAD 1.0f           // rays farther apart have too little in common to be mixed
+#define MOST_SPREAD 1.4f           // rays farther apart have too little in common to be mixed
 
 #define TEST_VALUES Float
 #define TEST_MASK Int
@@ -22,17 +22,6 @@
 #undef TEST_MASK
 #undef TEST_FUSED
 #undef TEST
-
-typedef struct {
-    LaneFloats ox, oy, oz, dx, dy, dz, limit; // unit directions; what lies at the limit or beyond is not seen
-    uint from[LANES] __attribute__((aligned(64)));
-} RayGroup;
-
-INLINE Ray group_ray(const RayGroup *g, uint i) {
-    Ray r = {g->ox.value[i], g->oy.value[i], g->oz.value[i], g->dx.value[i], g->dy.value[i], g->dz.value[i], g->limit.value[i],
-             g->from[i]};
-    return r;
-}
 
 typedef struct {
     LaneFloats t, u, v;
@@ -88,45 +77,35 @@ INLINE void bound_axis(uint rays, uint down, Float origin, Float reciprocal, flo
 }
 
 // How triangles are sheared for each ray, as ray_shear does for one.
-INLINE void shear_packet(Packet *p, Vec3 d) {
-    Vec3 o = p->origin;
-    Int x = p->x_major, y = p->y_major;
-    p->permuted = vec3(BY_AXIS(x, y, o.y, o.z, o.x), BY_AXIS(x, y, o.z, o.x, o.y), BY_AXIS(x, y, o.x, o.y, o.z));
-    p->shear_z = 1.0f / BY_AXIS(x, y, d.x, d.y, d.z);
-    p->shear_x = BY_AXIS(x, y, d.y, d.z, d.x) * p->shear_z;
-    p->shear_y = BY_AXIS(x, y, d.z, d.x, d.y) * p->shear_z;
-    uint first_x = lane_bits(x) >> lowest_bit(p->rays) & 1u, first_y = lane_bits(y) >> lowest_bit(p->rays) & 1u;
-    p->kx = BY_AXIS(first_x, first_y, 1u, 2u, 0u) * BLOCK_ROW_BYTES;
-    p->ky = BY_AXIS(first_x, first_y, 2u, 0u, 1u) * BLOCK_ROW_BYTES;
-    p->kz = BY_AXIS(first_x, first_y, 0u, 1u, 2u) * BLOCK_ROW_BYTES;
+INLINE void shear_packet(Packet *p, const GroupSetup *s) {
+    p->permuted = vec3(LANES_OF(s->ox), LANES_OF(s->oy), LANES_OF(s->oz));
+    p->shear_x = LANES_OF(s->sx), p->shear_y = LANES_OF(s->sy), p->shear_z = LANES_OF(s->sz);
+    uint first = lowest_bit(p->rays);
+    p->kx = s->kx[first], p->ky = s->ky[first], p->kz = s->kz[first];
 }
 
-INLINE float extent(uint rays, Float v) { return greatest_of(rays, v) - least_of(rays, v); }
-
-// The widest extent of a vector's components.
-INLINE float widest(uint rays, Vec3 v) { return max(max(extent(rays, v.x), extent(rays, v.y)), extent(rays, v.z)); }
-
-// How far apart rays are: how much their directions differ, and their origins for their lengths.
-INLINE float spread(uint rays, Vec3 d, Vec3 origin, Float limit) {
-    return widest(rays, d) + widest(rays, origin) / least_of(rays, limit);
+// Whether rays are close together: how much their directions differ from that of the first, and their origins for its length.
+INLINE int are_close(const RayGroup *g, uint rays, uint first) {
+    Vec3 d = vec3(LANES_OF(g->dx), LANES_OF(g->dy), LANES_OF(g->dz)), o = vec3(LANES_OF(g->ox), LANES_OF(g->oy), LANES_OF(g->oz));
+    Vec3 turn = absolute(sub(d, vec3(g->dx.value[first], g->dy.value[first], g->dz.value[first])));
+    Vec3 way = absolute(sub(o, vec3(g->ox.value[first], g->oy.value[first], g->oz.value[first])));
+    Float apart = madd(max_component(way), (Float)(1.0f / g->limit.value[first]), max_component(turn));
+    return (rays & lane_bits(apart > MOST_SPREAD)) == 0u;
 }
 
 // The packet of those of the rays `left` that are like the first of them or, where they may be mixed and are not too far apart,
 // of all. The others, and all if the packet came out too small, stay out of it.
-INLINE Packet make_packet(const RayGroup *g, uint left, int may_mix) {
+INLINE Packet make_packet(const RayGroup *g, const GroupSetup *s, uint left, int may_mix) {
     Packet p;
-    Vec3 d = vec3(LANES_OF(g->dx), LANES_OF(g->dy), LANES_OF(g->dz));
     p.origin = vec3(LANES_OF(g->ox), LANES_OF(g->oy), LANES_OF(g->oz));
-    p.reciprocal = vec3(reciprocal_lanes(d.x), reciprocal_lanes(d.y), reciprocal_lanes(d.z));
-    Vec3 size = absolute(d);
-    // As ray_shear chooses.
-    p.x_major = (size.x > size.y) & (size.x > size.z), p.y_major = !p.x_major & (size.y > size.z);
+    p.reciprocal = vec3(LANES_OF(s->reciprocal_x), LANES_OF(s->reciprocal_y), LANES_OF(s->reciprocal_z));
+    p.x_major = kept_mask(s->x_major), p.y_major = kept_mask(s->y_major);
     uint xs = lane_bits(p.reciprocal.x < 0.0f), ys = lane_bits(p.reciprocal.y < 0.0f), zs = lane_bits(p.reciprocal.z < 0.0f);
     uint xm = lane_bits(p.x_major), ym = lane_bits(p.y_major);
     uint first = lowest_bit(left);
 #define LIKE_FIRST(bits) ((((bits) >> first) & 1u) ? (bits) : ~(bits))
     uint alike = LIKE_FIRST(xs) & LIKE_FIRST(ys) & LIKE_FIRST(zs) & LIKE_FIRST(xm) & LIKE_FIRST(ym);
-    int mix = may_mix && (left & ~alike) && spread(left, d, p.origin, LANES_OF(g->limit)) < MOST_SPREAD;
+    int mix = may_mix && (left & ~alike) && are_close(g, left, first);
     p.rays = mix ? left : left & alike;
     p.mixed = 0u;
     if (popcount(p.rays) < LEAST_PACKET) return p;
@@ -142,7 +121,7 @@ INLINE Packet make_packet(const RayGroup *g, uint left, int may_mix) {
     bound_axis(p.rays, zs, p.origin.z, p.reciprocal.z, &b->near_oz, &b->far_oz, &b->near_z, &b->far_z);
     choose_rows(b, xs == p.rays, ys == p.rays, zs == p.rays);
     p.far_reciprocal = p.mixed & MIXED_SIGNS ? p.reciprocal : scale(p.reciprocal, (Float)FAR_WIDENING);
-    shear_packet(&p, d);
+    shear_packet(&p, s);
     return p;
 }
 
@@ -242,15 +221,6 @@ INLINE uint rays_at_triangle(global const uchar *block, uint i, uint number, uin
     uint unsure = inside & lane_bits(near);
     if (UNLIKELY(unsure)) hits |= rays_near_triangle(block, i, unsure, g, limit, t);
     return hits;
-}
-
-// Rays that are not numbers, or have no room for a hit, stay out.
-INLINE uint sound_rays(const RayGroup *g, uint live) {
-    Float sum = ZERO;
-    const LaneFloats *parts[6] = {&g->ox, &g->oy, &g->oz, &g->dx, &g->dy, &g->dz};
-#pragma unroll
-    for (uint i = 0u; i < 6u; i++) sum += LANES_OF(*parts[i]) - LANES_OF(*parts[i]);
-    return live & lane_bits((sum == 0.0f) & (LANES_OF(g->limit) > 0.0f));
 }
 
 #endif

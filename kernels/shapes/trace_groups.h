@@ -90,9 +90,11 @@ INLINE void trace_closest_group(Geometry g, const RayGroup *group, uint live, Gr
     *(Float *)hit->v.value = ZERO;
     *(UInt *)hit->slot = (UInt)HIT_NONE;
     uint left = sound_rays(group, live);
+    GroupSetup setup;
+    set_up_group(group, &setup);
     PacketStack stack;
     while (left) {
-        Packet p = make_packet(group, left, 0);
+        Packet p = make_packet(group, &setup, left, 0);
         // A ray alone is a packet that is already at its end: so both ways share the code.
         int together = popcount(p.rays) >= LEAST_PACKET;
         uint current = 0u, rays = together ? p.rays : left;
@@ -104,7 +106,7 @@ INLINE void trace_closest_group(Geometry g, const RayGroup *group, uint live, Gr
         float farthest = greatest_of(rays, reach);
         for (;;) {
             if (!together || popcount(rays) <= SINGLE_RAYS) {
-                closest_one_by_one(g, current, rays, group, hit);
+                closest_one_by_one(g, current, rays, group, &setup, hit);
             } else if (current & BVH_LEAF) {
                 closest_for_packet(g, current & ~BVH_LEAF, rays, &p, group, hit);
             } else {
@@ -160,9 +162,11 @@ INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
     Float limit = LANES_OF(group->limit);
     // Hits at the limit itself do not count.
     Float below = as_Float(as_UInt(limit) - (UInt)1u), reach = REACH(limit);
+    GroupSetup setup;
+    set_up_group(group, &setup);
     PacketStack stack;
     while (left) {
-        Packet p = make_packet(group, left, 1);
+        Packet p = make_packet(group, &setup, left, 1);
         int together = popcount(p.rays) >= LEAST_PACKET;
         uint current = 0u, rays = together ? p.rays : left;
         left &= ~rays;
@@ -171,7 +175,7 @@ INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
         stack.top = 1u;
         while (current != BVH_EMPTY) {
             if (!together || popcount(rays) <= SINGLE_RAYS) {
-                blocked |= any_one_by_one(g, current, rays, group);
+                blocked |= any_one_by_one(g, current, rays, group, &setup);
             } else if (current & BVH_LEAF) {
                 blocked |= any_for_packet(g, current & ~BVH_LEAF, rays, &p, group, below);
             } else {

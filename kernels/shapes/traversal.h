@@ -12,7 +12,7 @@
 
 #include "shapes/box_test.h"
 #include "shapes/geometry.h"
-#include "shapes/triangle_block.h"
+#include "shapes/ray_group.h"
 #if HAS_ANALYTIC
 #include "shapes/analytic_geometry.h"
 #endif
@@ -153,9 +153,7 @@ INLINE uint pop_nearer(const ulong *stack, uint *top, float t) {
 }
 
 // What of the subtree `current` is nearer than *hit.
-INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *found_hit) {
-    BoxTest box = box_test(r);
-    RayShear shear = ray_shear(r);
+INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, BoxTest box, RayShear shear, Hit *found_hit) {
     Hit hit = *found_hit;
     ulong stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
@@ -216,16 +214,30 @@ INLINE void trace_closest_from(Geometry g, uint current, const Ray *r, Hit *foun
     *found_hit = hit;
 }
 
-// The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
-INLINE Hit trace_closest(Geometry g, const Ray *r) {
+// Nothing yet.
+INLINE Hit no_hit(const Ray *r) {
     Hit hit = {
         r->limit, 0.0f, 0.0f, HIT_NONE,
 #if HAS_INSTANCES
         INSTANCE_NONE,
 #endif
     };
+    return hit;
+}
+
+// The nearest hit in (0, limit); `primitive` is HIT_NONE and `t` the limit when there is none.
+INLINE Hit trace_closest(Geometry g, const Ray *r) {
+    Hit hit = no_hit(r);
     // Also a limit that is not a number has no room for a hit.
-    if (LIKELY(r->limit > 0.0f && is_finite_ray(r))) trace_closest_from(g, 0u, r, &hit);
+    if (LIKELY(r->limit > 0.0f && is_finite_ray(r))) trace_closest_from(g, 0u, r, box_test(r), ray_shear(r), &hit);
+    return hit;
+}
+
+// The same of ray i of a group, of which the `sound` ones can hit something.
+INLINE Hit trace_closest_of_group(Geometry g, const RayGroup *group, const GroupSetup *setup, uint sound, uint i) {
+    Ray r = group_ray(group, i);
+    Hit hit = no_hit(&r);
+    if (LIKELY(sound >> i & 1u)) trace_closest_from(g, 0u, &r, group_box_test(group, setup, i), group_shear(setup, i), &hit);
     return hit;
 }
 
@@ -248,9 +260,7 @@ INLINE uint any_analytic(Geometry g, uint reference, const Ray *r) {
 INLINE float just_below(float limit) { return as_float(as_uint(limit) - 1u); }
 
 // 1 if anything of the subtree `current` is hit in (0, limit).
-INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
-    BoxTest box = box_test(r);
-    RayShear shear = ray_shear(r);
+INLINE uint trace_any_from(Geometry g, uint current, const Ray *r, BoxTest box, RayShear shear) {
     uint stack[BVH_STACK];
     stack[0] = BVH_EMPTY;
     uint top = 1u;
@@ -320,7 +330,7 @@ INLINE uint trace_any_from(Geometry g, uint current, const Ray *r) {
 
 // 1 if anything is hit in (0, limit).
 INLINE uint trace_any(Geometry g, const Ray *r) {
-    return LIKELY(r->limit > 0.0f && is_finite_ray(r)) ? trace_any_from(g, 0u, r) : 0u;
+    return LIKELY(r->limit > 0.0f && is_finite_ray(r)) ? trace_any_from(g, 0u, r, box_test(r), ray_shear(r)) : 0u;
 }
 
 #endif

@@ -38,10 +38,10 @@ typedef struct {
     ulong stack[BVH_STACK];
 } Walk;
 
-INLINE void start_walk(Walk *w, uint start, uint k, const RayGroup *group, const GroupHit *hits) {
+INLINE void start_walk(Walk *w, uint start, uint k, const RayGroup *group, const GroupSetup *setup, const GroupHit *hits) {
     w->ray = group_ray(group, k);
-    w->box = box_test(&w->ray);
-    w->shear = ray_shear(&w->ray);
+    w->box = group_box_test(group, setup, k);
+    w->shear = group_shear(setup, k);
     w->hit = group_hit(hits, k);
     w->current = start;
     w->index = k;
@@ -69,13 +69,13 @@ INLINE int take_step(Geometry g, Walk *w) {
     return w->current != BVH_EMPTY;
 }
 
-INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, GroupHit *hits) {
+INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, const GroupSetup *setup, GroupHit *hits) {
     Walk walks[WALKS];
     uint going[WALKS]; // those of the walks that are on their way, first
     uint n = 0u;
     for (; rays && n < WALKS; n++) {
         POP_LOWEST_BIT(rays, k);
-        start_walk(walks + n, start, k, group, hits);
+        start_walk(walks + n, start, k, group, setup, hits);
         going[n] = n;
     }
     while (n) {
@@ -85,7 +85,7 @@ INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup
             set_group_hit(hits, w->index, w->hit);
             if (rays) {
                 POP_LOWEST_BIT(rays, k);
-                start_walk(w, start, k, group, hits);
+                start_walk(w, start, k, group, setup, hits);
             } else {
                 going[i] = going[--n];
             }
@@ -95,12 +95,12 @@ INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup
 
 #else
 
-INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, GroupHit *hits) {
+INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, const GroupSetup *setup, GroupHit *hits) {
     while (rays) {
         POP_LOWEST_BIT(rays, k);
         Ray r = group_ray(group, k);
         Hit h = group_hit(hits, k);
-        trace_closest_from(g, start, &r, &h);
+        trace_closest_from(g, start, &r, group_box_test(group, setup, k), group_shear(setup, k), &h);
         set_group_hit(hits, k, h);
     }
 }
@@ -108,12 +108,12 @@ INLINE void closest_one_by_one(Geometry g, uint start, uint rays, const RayGroup
 #endif
 
 // Bits of the `rays` that hit anything of the subtree `start`.
-INLINE uint any_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group) {
+INLINE uint any_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, const GroupSetup *setup) {
     uint blocked = 0u;
     while (rays) {
         POP_LOWEST_BIT(rays, k);
         Ray r = group_ray(group, k);
-        blocked |= trace_any_from(g, start, &r) << k;
+        blocked |= trace_any_from(g, start, &r, group_box_test(group, setup, k), group_shear(setup, k)) << k;
     }
     return blocked;
 }

@@ -49,7 +49,7 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     for (uint i = 0u; i < n; i += LANES) {
         RayGroup group;
         GroupHit hit;
-        load_group(&group, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, i);
+        load_group(&group, geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
         trace_closest_group(geometry, &group, lane_bits(lanes_below(i, n)), &hit);
         write_field(rays, PATH_T, i, LANES_OF(hit.t));
         write_field(rays, PATH_U, i, LANES_OF(hit.u));
@@ -61,17 +61,22 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
 // Ray by ray through the hierarchy.
 INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
     uint n = *rays.count;
-    for (uint i = 0u; i < n; i++) {
-        Ray r;
-        load_ray(&r, geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
-        Hit hit = trace_closest(geometry, &r);
-        set_slot(rays, PATH_T, i, hit.t);
-        set_slot(rays, PATH_U, i, hit.u);
-        set_slot(rays, PATH_V, i, hit.v);
-        set_slot(rays, PATH_HIT, i, as_float(hit.primitive));
+    for (uint i = 0u; i < n; i += LANES) {
+        RayGroup group;
+        GroupSetup setup;
+        load_group(&group, geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
+        set_up_group(&group, &setup);
+        uint live = min(LANES + 0u, n - i), sound = sound_rays(&group, lane_bits(lanes_below(i, n)));
+        for (uint k = 0u; k < live; k++) {
+            Hit hit = trace_closest_of_group(geometry, &group, &setup, sound, k);
+            set_slot(rays, PATH_T, i + k, hit.t);
+            set_slot(rays, PATH_U, i + k, hit.u);
+            set_slot(rays, PATH_V, i + k, hit.v);
+            set_slot(rays, PATH_HIT, i + k, as_float(hit.primitive));
 #if HAS_INSTANCES
-        set_slot(rays, PATH_INSTANCE, i, as_float(hit.instance));
+            set_slot(rays, PATH_INSTANCE, i + k, as_float(hit.instance));
 #endif
+        }
     }
 }
 #endif

@@ -43,7 +43,7 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
     uint n = *shadow.count;
     for (uint i = 0u; i < n; i += LANES) {
         RayGroup group;
-        load_group(&group, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, i);
+        load_group(&group, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
         uint live = lane_bits(lanes_below(i, n));
         uint seen = live & ~trace_any_group(geometry, &group, live);
         UInt id = SELECT(lanes_below(i, n), read_uint(shadow, SHADOW_ID, i), (UInt)0u);
@@ -54,12 +54,19 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
 // Ray by ray through the hierarchy.
 INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) {
     uint n = *shadow.count;
-    for (uint i = 0u; i < n; i++) {
-        Ray r;
-        load_ray(&r, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
-        if (trace_any(geometry, &r)) continue;
-        uint id = slot_uint(shadow, SHADOW_ID, i);
-        for (uint c = 0u; c < 3u; c++) radiance_channel(block, c)[RADIANCE_AT(id)] += slot_float(shadow, SHADOW_CONTRIBUTION + c, i);
+    for (uint i = 0u; i < n; i += LANES) {
+        RayGroup group;
+        GroupSetup setup;
+        load_group(&group, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
+        set_up_group(&group, &setup);
+        uint live = lane_bits(lanes_below(i, n)), left = sound_rays(&group, live), seen = live;
+        while (left) {
+            POP_LOWEST_BIT(left, k);
+            Ray r = group_ray(&group, k);
+            seen &= ~(trace_any_from(geometry, 0u, &r, group_box_test(&group, &setup, k), group_shear(&setup, k)) << k);
+        }
+        UInt id = SELECT(lanes_below(i, n), read_uint(shadow, SHADOW_ID, i), (UInt)0u);
+        add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), seen);
     }
 }
 #endif
