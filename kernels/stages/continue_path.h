@@ -8,13 +8,15 @@
 // Paths whose throughput has fallen below this play for their survival; those that win are brought back up to it, so that what a
 // path may bring keeps its size. (Found by relMSE times rays over indoor scenes: half of it to twice as much costs at most some percent.)
 #define ROULETTE_THRESHOLD 0.4f
+// What the camera sees in mirrors is not to be noisier than what it sees: paths that only delta lobes have dimmed play when next to nothing is left.
+#define ROULETTE_DELTA_THRESHOLD 0.01f
 // From this vertex on all play, and one in twenty loses at least: paths between white walls end, too.
 #define ROULETTE_FOR_ALL 16u
 
 // Throughput stands for what a path may still bring: its largest component, corrected for the scaling of radiance by refraction.
-// From `rr_depth` vertices on.
-INLINE Int roulette(SampleId sample, UInt depth, Float eta, uint rr_depth, Rgb *throughput, Int alive) {
-    Float survival = max_component(*throughput) * eta * eta * (1.0f / ROULETTE_THRESHOLD);
+// From `rr_depth` vertices on, below a threshold.
+INLINE Int roulette(SampleId sample, UInt depth, Float eta, uint rr_depth, Float inverse_threshold, Rgb *throughput, Int alive) {
+    Float survival = max_component(*throughput) * eta * eta * inverse_threshold;
     survival = LESSER(survival, SELECT(depth < (UInt)ROULETTE_FOR_ALL, ONE, (Float)0.95f));
     Int playing = alive & (survival < 1.0f) & (depth + (UInt)1u >= (UInt)rr_depth);
     if (!any_lane(playing)) return alive;

@@ -25,7 +25,9 @@ INLINE uint run_scatter_delta(Block block, const SceneView *scene) {
         Float finite = finiteness3(s.weight) + finiteness3(s.wo) + finiteness3(surface.position) + finiteness3(surface.wi) +
                        SELECT(goes, finiteness3(throughput), ZERO);
         Int broken = mark_broken(block, STAGE_SCATTER_DELTA, path.id, path.live, finite);
-        Int alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput,
+        // Only delta lobes so far, or again.
+        Float inverse_threshold = SELECT(path.pdf < 0.0f, (Float)(1.0f / ROULETTE_DELTA_THRESHOLD), (Float)(1.0f / ROULETTE_THRESHOLD));
+        Int alive = roulette(sample, path.depth, eta, parameters->rr_depth, inverse_threshold, &throughput,
                              path.live & !broken & (max_component(throughput) > 0.0f));
 #if HAS_MEDIA
         UInt medium = medium_beyond(scene->media, scene->surfaces, &surface, direction, path.medium);

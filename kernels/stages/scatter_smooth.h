@@ -200,7 +200,7 @@ INLINE uint scatter_smooth(uint lobe_class, Block block, Queue paths, const Scen
 #if HAS_CAUSTICS
         eta *= guided_gain(value.pdf, unguided);
 #endif
-        alive = roulette(sample, path.depth, eta, parameters->rr_depth, &throughput, alive);
+        alive = roulette(sample, path.depth, eta, parameters->rr_depth, (Float)(1.0f / ROULETTE_THRESHOLD), &throughput, alive);
 #if HAS_LIGHT_TREE
         append_uint(rays, PATH_RECEIVER, appended, receiver.normal, lane_bits(alive));
 #if HAS_GLOSSY_RECEIVERS

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from means import blocks, count_variance, p_values
 from rows import append_rows
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
@@ -29,27 +30,9 @@ SIGNIFICANCE = 0.01
 MOST_ROUNDS = 5  # times as many, where the means are not known well enough
 
 
-def student_p_values(t, degrees):
-    """Two-sided, by integrating the density of Student's distribution; `degrees` is one number."""
-    from math import exp, lgamma, pi, sqrt
-
-    # Substitute x = tan(a) sqrt(degrees): the tail is the integral of cos^(degrees - 1) from a to pi / 2.
-    grid = np.linspace(0.0, pi / 2, 200001)
-    density = np.cos(grid) ** (degrees - 1) * exp(lgamma((degrees + 1) / 2) - lgamma(degrees / 2)) / sqrt(pi)
-    steps = 0.5 * (density[1:] + density[:-1]) * (grid[1] - grid[0])
-    tail = np.append(np.cumsum(steps[::-1])[::-1], 0.0)
-    return 2.0 * np.interp(np.arctan(np.abs(t) / sqrt(degrees)), grid, tail)
-
-
 def load(mi, path):
     bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False)
     return np.array(bitmap, dtype=np.float64)
-
-
-def blocks(pictures, size):
-    """Means of squares of `size` pixels; rounds first, channels last."""
-    n, height, width, channels = pictures.shape
-    return pictures.reshape(n, height // size, size, width // size, size, channels).mean(axis=(2, 4))
 
 
 def deviations(ours, theirs):
@@ -61,9 +44,10 @@ def deviations(ours, theirs):
     return np.sign(difference) * beyond_rounding / np.sqrt(np.maximum(variance, 1e-300))
 
 
-def welch(ours, theirs):
-    """How many means differ, of which channel and place the least likely is, its p-value, and the threshold."""
-    p = student_p_values(np.abs(deviations(ours, theirs)), 2 * len(ours) - 2)
+def welch(ours, theirs, samples):
+    """How many means of `samples` differ, of which channel and place the least likely is, its p-value, and the threshold. Where nothing
+    varies both agree to a few roundings, or do not."""
+    p = p_values(ours, theirs, 1e-5 * np.abs(theirs.mean(axis=0)), count_variance(theirs, samples))
     threshold = -np.expm1(np.log1p(-SIGNIFICANCE) / p.size)
     worst = np.unravel_index(np.argmin(p), p.shape)
     return int((p < threshold).sum()), f"row {worst[0]}, column {worst[1]}, channel {worst[2]}: p {p[worst]:.2g}, threshold {threshold:.2g}"
@@ -126,8 +110,8 @@ def compare(mi, source, panels):
         theirs.append(np.array(mi.render(theirs_scene, spp=spp, seed=seed), dtype=np.float64)[..., :3])
     ours, theirs, rounds = np.array(ours), np.array(theirs), len(ours)
     panels.append((scene_name(source), ours, theirs))
-    pixels, worst_pixel = welch(ours, theirs)
-    squares, worst_square = welch(blocks(ours, BLOCK), blocks(theirs, BLOCK))
+    pixels, worst_pixel = welch(ours, theirs, spp)
+    squares, worst_square = welch(blocks(ours, BLOCK), blocks(theirs, BLOCK), spp * BLOCK**2)
     by_channel, errors = relative_means(ours, theirs)
     mse, ratio, ratio_error = relative_mse(ours, theirs)
     name = f"{scene_name(source)} against Mitsuba {mi.__version__}"

@@ -9,7 +9,6 @@ line a case; those that Mitsuba cannot load are named. Fails if any case differs
 """
 
 import contextlib
-import functools
 import os
 import subprocess
 import sys
@@ -19,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from peers import SIGNIFICANCE, blocks
+from means import blocks, count_variance, p_values
+from peers import SIGNIFICANCE
 from plugin_data import write_all
 import plugin_cases
 import plugin_differences
@@ -85,30 +85,14 @@ def comparable(channel):
     return not (channel.startswith("m2_") and channel[-1] in "XYZRGB")
 
 
-@functools.cache
-def tail(degrees):
-    """Angles, and the two-sided p of the t whose tangent over the root of the degrees of freedom they are."""
-    grid = np.linspace(0.0, np.pi / 2, 20001)
-    steps = np.exp((degrees - 1) * np.log(np.maximum(np.cos(0.5 * (grid[1:] + grid[:-1])), 1e-300)))
-    sums = np.append(np.cumsum(steps[::-1])[::-1], 0.0)
-    return grid, sums / sums[0]
-
-
 def p_of_means(ours, theirs, samples, rounding):
-    """The least p of Welch's tests of every mean, where it is, and how many tests that are. `samples` of ours are in each mean: what
-    the picture's mean as one sample more would make of it is no difference, as rare samples need not have come yet."""
+    """The least p of Welch's tests of every mean, where it is, and how many tests that are. `samples` of ours are in each mean of a round:
+    what the picture's mean as one sample more of all rounds would make of it is no difference, as rare samples need not have come yet."""
     if not (np.isfinite(ours).all() and np.isfinite(theirs).all()):
         return 0.0, "not finite", 1
     reference = theirs.mean(axis=0)
-    slack = rounding * np.abs(reference) + np.abs(theirs).mean(axis=tuple(range(theirs.ndim - 1))) / samples
-    parts = [np.maximum(a.var(axis=0, ddof=1) / len(a), 1e-30) for a in (ours, theirs)]
-    t = np.maximum(np.abs(ours.mean(axis=0) - reference) - slack, 0.0) / np.sqrt(parts[0] + parts[1])
-    degrees = (parts[0] + parts[1]) ** 2 / (parts[0] ** 2 / (len(ours) - 1) + parts[1] ** 2 / (len(theirs) - 1))
-    degrees = np.floor(degrees).astype(int)
-    p = np.ones_like(t)
-    for d in np.unique(degrees):
-        here = degrees == d
-        p[here] = np.interp(np.arctan(t[here] / np.sqrt(d)), *tail(int(d)))
+    slack = rounding * np.abs(reference) + np.abs(theirs).mean(axis=tuple(range(theirs.ndim - 1))) / (samples * len(ours))
+    p = p_values(ours, theirs, slack, count_variance(theirs, samples))
     place = np.unravel_index(np.argmin(p), p.shape)
     return float(p[place]), tuple(map(int, place)), p.size
 
@@ -132,7 +116,7 @@ class Comparison:
         self.missing = [c for c in self.pictures[1][0] if c not in self.pictures[0][0] and c != "A"]
         ours, theirs = self.stack(0), self.stack(1)
         height, width = (n // BLOCK * BLOCK for n in ours.shape[1:3])
-        samples = case.spp * len(ours)
+        samples = case.spp
         self.tests = [
             ("pixel", *p_of_means(ours, theirs, samples, case.rounding)),
             ("square", *p_of_means(*(blocks(a[:, :height, :width], BLOCK) for a in (ours, theirs)), samples * BLOCK**2, case.rounding)),

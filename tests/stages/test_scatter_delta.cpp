@@ -105,6 +105,7 @@ TEST_P(ScatterDelta, RouletteKeepsTheMean) {
     constexpr std::uint32_t deep = 64;  // vertices of the last 64 paths
     for (std::uint32_t i = 0; i < 256; ++i) {
         paths[i].id = i;
+        paths[i].pdf = 0.5F;
         paths[i].depth = i < 64 ? 1 : i < 192 ? 2 : deep;  // the second vertex or the third, or a late one
         paths[i].throughput = i < 192 ? glm::vec3{0.1F, 0.05F, 0.2F} : glm::vec3{0.95F, 0.5F, 1.0F};
     }
@@ -130,13 +131,37 @@ TEST_P(ScatterDelta, RouletteKeepsTheMean) {
     EXPECT_LT(bright, 64U);
 }
 
+// What the camera sees in a dark mirror is no matter of luck until next to nothing is left of it; what a rough surface sees there is.
+TEST_P(ScatterDelta, RouletteSparesWhatOnlyMirrorsDimmed) {
+    Scene scene = surface_scene(Conductor{}, false);
+    scene.integrator.rr_depth = 1;
+    StageBench bench(scene, GetParam(), 256);
+    std::vector<TestPath> paths = arriving(bench, {1, 0.5F, -2}, 256);
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        paths[i].id = i;
+        paths[i].pdf = i < 128 ? -1.0F : 0.5F;
+        paths[i].throughput = i < 64 ? glm::vec3{0.01F} : i < 128 ? glm::vec3{0.005F} : glm::vec3{0.1F};
+    }
+    bench.fill(QUEUE_DELTA, paths);
+    bench.run("scatter_delta");
+    std::uint32_t spared = 0, faint = 0, seen = 0;
+    for (std::uint32_t i = 0; i < bench.header().count[QUEUE_RAYS]; ++i) {
+        const TestPath p = bench.path(QUEUE_RAYS, i);
+        (p.id < 64 ? spared : p.id < 128 ? faint : seen) += 1;
+        expect_close(p.throughput, glm::dvec3(p.id < 128 ? 0.01 : 0.4));
+    }
+    EXPECT_EQ(spared, 64U);
+    EXPECT_NEAR(faint, 32.0, 4.5 * std::sqrt(64 * 0.25));
+    EXPECT_NEAR(seen, 32.0, 4.5 * std::sqrt(128 * 0.25 * 0.75));
+}
+
 // What is bright enough does not play.
 TEST_P(ScatterDelta, RouletteSparesTheBright) {
     Scene scene = surface_scene(Conductor{}, false);
     scene.integrator.rr_depth = 1;
     StageBench bench(scene, GetParam(), 256);
     std::vector<TestPath> paths = arriving(bench, {1, 0.5F, -2}, 256);
-    for (TestPath& p : paths) p.throughput = {0.1F, 0.4F, 0.2F};
+    for (TestPath& p : paths) p.pdf = 0.5F, p.throughput = {0.1F, 0.4F, 0.2F};
     bench.fill(QUEUE_DELTA, paths);
     bench.run("scatter_delta");
     ASSERT_EQ(bench.header().count[QUEUE_RAYS], 256U);
