@@ -31,6 +31,7 @@ const std::vector<Known> known_constants{
     {"bsdf/ward.h", "GREATER(h.z, (Float)1e-9f)", "divisor of a quotient that is not selected"},
     {"caustics/guide.h", "(Float)0x1p-18f), (Float)(1.0f - 0x1p-18f)", "margin of a bin of directions, of which no rounding leads out"},
     {"lights/rectangle.h", "ONE), (Float)0x1p-40f)", "square of a sine below the rounding of its cosine"},
+    {"lights/rectangle.h", "GREATER(square, (Float)0x1p-80f)", "divisor of a quotient that is clamped to the rectangle"},
     {"lights/light_tree.h", "#define HORIZON_SLACK 0x1p-13f", "rounding of coded normals: lights are sampled rather too often"},
     {"lights/light_tree.h", "#define LEAST_DISTANCE2 0x1p-100f", "keeps importances finite"},
     {"lights/light_tree.h", "#define LEAST_SHALLOW 0x1p-12f", "where the digits of a random number run out"},
