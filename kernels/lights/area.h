@@ -4,11 +4,10 @@
 
 #include "lights/radiance.h"
 
-// Points spread evenly over an area have, as seen from a distance, the solid angle density distance^2 / (|cos| area).
-
 // Zero where the surface is seen edge-on or touched: there no density is finite, and no light arrives.
 INLINE Float finite_density(Float pdf) { return SELECT(pdf < INFINITY, pdf, ZERO); }
 
+// Solid angle density, as seen from a distance, of points spread evenly over an area: distance^2 / (|cos| area).
 INLINE Float area_light_hit_pdf(LightInput in, Vec3 direction, Float t, Vec3 normal) {
     return finite_density(t * t * light_field(in, inverse_area) / fabs(dot3(direction, normal)));
 }

@@ -1,5 +1,5 @@
 // A rectangle that emits on the side of its normal, sampled evenly over the solid angle under which it is seen.  Fields as a
-// parallelogram's; edge1 and edge2 are perpendicular.
+// parallelogram's and inverse_length1 and inverse_length2; edge1 and edge2 are perpendicular.
 // Urena, Fajardo, King 2013, "An Area-Preserving Parametrization for Spherical Rectangles".
 #ifndef WAVELOBE_LIGHTS_RECTANGLE_H
 #define WAVELOBE_LIGHTS_RECTANGLE_H
@@ -25,7 +25,7 @@ typedef struct {
     Float inverse_distance; // of the first
 } Slopes;
 
-// x / sqrt(x^2 + z^2) for two x: one division serves both. Squares neither overflow nor vanish where their roots' product does not.
+// x / sqrt(x^2 + z^2) for two x: one division serves both. The roots' product neither overflows nor vanishes where the squares do not.
 INLINE Slopes sines_of_slopes(Float x0, Float x1, Float z2) {
     Float d0 = sqrt(madd(x0, x0, z2)), d1 = sqrt(madd(x1, x1, z2));
     Float inverse = 1.0f / (d0 * d1);
