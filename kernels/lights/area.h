@@ -26,7 +26,7 @@ INLINE LightSample area_light_sample(LightInput in, Vec3 reference, Vec3 point, 
     s.at_infinity = !TRUE_MASK;
     Int by_area = solid_angle == 0.0f;
     Float pdf = SELECT(by_area, distance_squared * light_field(in, inverse_area), ONE) / SELECT(by_area, fabs(cosine), solid_angle);
-    s.pdf = finite_density(pdf);
+    s.pdf = SELECT(distance_squared > 0.0f, finite_density(pdf), ZERO);
     s.radiance = select3((cosine > 0.0f) & (s.pdf > 0.0f), light_radiance(in, u, v), vec3_all(ZERO));
     s.delta = !TRUE_MASK;
     return s;

@@ -9,6 +9,7 @@
 // Seen under a smaller solid angle it is sampled evenly over its area: the two densities hardly differ, and the solid angle, a
 // sum of four arcs of up to a quarter turn each of which is off by 2^-24 or so, would not be known to 2^-14.
 #define LEAST_SOLID_ANGLE 0.01f
+#define MOST_SOLID_ANGLE 6.25f // of 2 pi
 
 // The rectangle as seen from the reference point: it spans [x0, x1] x [y0, y1] at height z0 <= 0 below it.
 typedef struct {
@@ -59,8 +60,9 @@ INLINE SphericalRectangle spherical_rectangle(LightInput in, Vec3 reference) {
     return r;
 }
 
-// Where the solid angle is what is sampled; not from a point in the plane, where it is not a number or zero.
-INLINE Int sampled_by_solid_angle(SphericalRectangle r) { return r.solid_angle >= LEAST_SOLID_ANGLE; }
+// Where the solid angle is what is sampled; not from a point in the plane, where it is zero or not a number or, on the rectangle itself,
+// all of a hemisphere that rounding alone tells from the other one.
+INLINE Int sampled_by_solid_angle(SphericalRectangle r) { return (r.solid_angle >= LEAST_SOLID_ANGLE) & (r.solid_angle < MOST_SOLID_ANGLE); }
 
 // Shares of the edges at which the sample (u1, u2) lies. With f = (b0 cos + b1) / sin and c = 1 / sqrt(f^2 + b0^2), the paper's x is
 // z0 c / sqrt(1 - c^2); multiplied out, nothing cancels but at the edges, and most divisions go.

@@ -22,6 +22,8 @@ std::vector<LightName> reachable_lights() {
     return names;
 }
 
+bool is_flat(const std::string& name) { return name != "sphere" && name != "cylinder" && name != "constant" && name != "envmap"; }
+
 std::string name_of(const testing::TestParamInfo<LightName>& light) { return light.param.name; }
 
 LightQuery query_of(const LightModel& m, const glm::vec2& random = {}) {
@@ -267,6 +269,24 @@ TEST_P(Lights, DarkOnTheOtherSide) {
             const bool faces = glm::dot(s.direction, s.normal) < 0.0F;
             ASSERT_EQ(s.radiance == glm::vec3(0.0F), enclosed || !faces);
         }
+    }
+}
+
+// What is flat does not light itself, though rounding puts a point of it on one side or the other.
+TEST_P(Lights, FlatOnesDoNotLightThemselves) {
+    if (!is_flat(GetParam().name)) return;
+    LightProbe light = probe();
+    for (const LightModel& m : all_.models) {
+        SCOPED_TRACE(m.label);
+        std::vector<LightQuery> queries = random_queries(m, 1 << 14, 11);
+        const std::vector<LightResult> places = light.sample(random_queries(m, 1 << 14, 12));
+        for (std::size_t i = 0; i < queries.size(); ++i) queries[i].reference = places[i].point;
+        double sum = 0.0;
+        for (const LightResult& s : light.sample(queries)) {
+            const double cosine = std::abs(glm::dot(s.direction, s.normal));  // of the receiver, which is in the same plane
+            if (s.pdf > 0.0F) sum += static_cast<double>(s.radiance.x) * cosine / static_cast<double>(s.pdf);
+        }
+        EXPECT_LT(sum / static_cast<double>(queries.size()), 1e-4 * std::numbers::pi * static_cast<double>(test_radiance.x));
     }
 }
 
