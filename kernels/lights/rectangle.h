@@ -9,7 +9,6 @@
 // Seen under a smaller solid angle it is sampled evenly over its area: the two densities hardly differ, and the solid angle, a
 // sum of four arcs of up to a quarter turn each of which is off by 2^-24 or so, would not be known to 2^-14.
 #define LEAST_SOLID_ANGLE 0.01f
-#define MOST_SOLID_ANGLE 6.25f // of 2 pi
 
 // The rectangle as seen from the reference point: it spans [x0, x1] x [y0, y1] at height z0 <= 0 below it.
 typedef struct {

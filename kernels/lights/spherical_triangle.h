@@ -41,7 +41,7 @@ INLINE SphericalTriangle spherical_triangle(LightInput in, Vec3 reference) {
 }
 
 // Not from a point in its plane, or at a corner, where the solid angle is zero or not a number.
-INLINE Int samples_solid_angle(SphericalTriangle t) { return (t.solid_angle >= LEAST_TRIANGLE_ANGLE) & (t.solid_angle < 6.25f); }
+INLINE Int samples_solid_angle(SphericalTriangle t) { return (t.solid_angle >= LEAST_TRIANGLE_ANGLE) & (t.solid_angle < MOST_SOLID_ANGLE); }
 
 // The unit vector in the plane of `axis` and `v`, perpendicular to `axis`.
 INLINE Vec3 perpendicular_part(Vec3 v, Vec3 axis) { return normalize3(scale_add(axis, -dot3(v, axis), v)); }

@@ -5,6 +5,9 @@
 #include "lights/area.h"
 #include "sampling/warps.h"
 
+// Of 2 pi: what is seen under a larger solid angle is touched, and sampled evenly over its area.
+#define MOST_SOLID_ANGLE 6.25f
+
 // Texture coordinates of the point position + b1 edge1 + b2 edge2 from those of the corners, which are three of a triangle (of half a parallelogram).
 INLINE Float planar_light_uv(LightInput in, uint component, Float b1, Float b2) {
     Float uv0 = light_word(in, WORD_OFFSET(Light, uv) + component);

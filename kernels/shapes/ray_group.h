@@ -43,7 +43,8 @@ typedef struct {
     KeptMask x_major, y_major;
 } GroupSetup;
 
-INLINE void set_up_group(const RayGroup *g, GroupSetup *s) {
+// Returns which of the `live` rays can hit anything.
+INLINE uint set_up_group(const RayGroup *g, uint live, GroupSetup *s) {
     Vec3 o = vec3(LANES_OF(g->ox), LANES_OF(g->oy), LANES_OF(g->oz));
     Vec3 d = vec3(LANES_OF(g->dx), LANES_OF(g->dy), LANES_OF(g->dz));
     *(Float *)s->reciprocal_x.value = reciprocal_lanes(d.x);
@@ -65,6 +66,7 @@ INLINE void set_up_group(const RayGroup *g, GroupSetup *s) {
 #undef LANES_BY_AXIS
     s->x_major = keep_mask(x);
     s->y_major = keep_mask(y);
+    return sound_rays(g, live);
 }
 
 INLINE BoxTest group_box_test(const RayGroup *g, const GroupSetup *s, uint i) {

@@ -75,14 +75,17 @@ INLINE UInt block_word(UInt slot) { return (slot >> 3) * RECORD_WORDS(TriangleBl
 #define PRIMITIVE_ID(word) (word)
 #endif
 
+INLINE UInt primitive_of_slot(SurfaceView s, UInt slot) {
+    return PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
+}
+
 INLINE UInt primitive_of_hit(SurfaceView s, UInt hit) {
 #if HAS_ANALYTIC
     Int analytic = (hit & (UInt)HIT_ANALYTIC) != (UInt)0u;
-    UInt slot = SELECT(analytic, (UInt)0u, hit);
-    UInt triangle = PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
+    UInt triangle = primitive_of_slot(s, SELECT(analytic, (UInt)0u, hit));
     return SELECT(analytic, (hit & (UInt)~HIT_ANALYTIC) + (UInt)s.triangle_count, triangle);
 #else
-    return PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(hit)));
+    return primitive_of_slot(s, hit);
 #endif
 }
 
@@ -90,12 +93,16 @@ typedef struct {
     Vec3 a, b, c;
 } Corners;
 
-// Nine words in a row.
+// The first nine words of a row.
+INLINE Corners row_corners(const Rows *r) {
+    Corners t = {vec3(r->word[0], r->word[1], r->word[2]), vec3(r->word[3], r->word[4], r->word[5]), vec3(r->word[6], r->word[7], r->word[8])};
+    return t;
+}
+
 INLINE Corners gather_corners(global const float *p, UInt i) {
     Rows r;
     gather_rows(p, i, &r);
-    Corners t = {vec3(r.word[0], r.word[1], r.word[2]), vec3(r.word[3], r.word[4], r.word[5]), vec3(r.word[6], r.word[7], r.word[8])};
-    return t;
+    return row_corners(&r);
 }
 
 // A triangle that was hit.
@@ -111,14 +118,8 @@ INLINE SlotTriangle triangle_of_slot(SurfaceView s, UInt slot) {
     Rows r;
     gather_rows((global const float *)s.few_slots, slot * ROW_WORDS, &r);
 #define SLOT_WORD(name) r.word[WORD_OFFSET(FewSlot, name)]
-    SlotTriangle t;
-    t.corners.a = vec3(r.word[0], r.word[1], r.word[2]);
-    t.corners.b = vec3(r.word[3], r.word[4], r.word[5]);
-    t.corners.c = vec3(r.word[6], r.word[7], r.word[8]);
-    t.normal = vec3(SLOT_WORD(normal.x), SLOT_WORD(normal.y), SLOT_WORD(normal.z));
-    t.primitive = as_UInt(SLOT_WORD(primitive));
-    t.shape = as_UInt(SLOT_WORD(shape));
-    t.material = as_UInt(SLOT_WORD(front_material));
+    SlotTriangle t = {row_corners(&r), vec3(SLOT_WORD(normal.x), SLOT_WORD(normal.y), SLOT_WORD(normal.z)), as_UInt(SLOT_WORD(primitive)),
+                      as_UInt(SLOT_WORD(shape)), as_UInt(SLOT_WORD(front_material))};
 #undef SLOT_WORD
     return t;
 }
@@ -140,7 +141,7 @@ INLINE SlotTriangle triangle_of_slot(SurfaceView s, UInt slot) {
     SlotTriangle t;
     t.corners = triangle_corners(s, slot);
     t.normal = normalize_any_scale(cross3(sub(t.corners.b, t.corners.a), sub(t.corners.c, t.corners.a)));
-    t.primitive = PRIMITIVE_ID(gather_uint((global const uint *)s.triangle_blocks + 72u, block_word(slot)));
+    t.primitive = primitive_of_slot(s, slot);
     t.shape = gather_uint(s.primitive_shapes, t.primitive);
     t.material = GATHER_UINT_FIELD(s.shapes, Shape, t.shape, front_material);
     return t;

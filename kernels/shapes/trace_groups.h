@@ -89,9 +89,8 @@ INLINE void trace_closest_group(Geometry g, const RayGroup *group, uint live, Gr
     *(Float *)hit->u.value = ZERO;
     *(Float *)hit->v.value = ZERO;
     *(UInt *)hit->slot = (UInt)HIT_NONE;
-    uint left = sound_rays(group, live);
     GroupSetup setup;
-    set_up_group(group, &setup);
+    uint left = set_up_group(group, live, &setup);
     PacketStack stack;
     while (left) {
         Packet p = make_packet(group, &setup, left, 0);
@@ -158,12 +157,11 @@ INLINE void push_any_children(Geometry g, uint index, uint rays, const Packet *p
 
 // Bits of the `live` rays that hit anything in (0, limit).
 INLINE uint trace_any_group(Geometry g, const RayGroup *group, uint live) {
-    uint left = sound_rays(group, live), blocked = 0u;
+    GroupSetup setup;
+    uint left = set_up_group(group, live, &setup), blocked = 0u;
     Float limit = LANES_OF(group->limit);
     // Hits at the limit itself do not count.
     Float below = as_Float(as_UInt(limit) - (UInt)1u), reach = REACH(limit);
-    GroupSetup setup;
-    set_up_group(group, &setup);
     PacketStack stack;
     while (left) {
         Packet p = make_packet(group, &setup, left, 1);

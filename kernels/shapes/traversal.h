@@ -333,4 +333,15 @@ INLINE uint trace_any(Geometry g, const Ray *r) {
     return LIKELY(r->limit > 0.0f && is_finite_ray(r)) ? trace_any_from(g, 0u, r, box_test(r), ray_shear(r)) : 0u;
 }
 
+// Bits of the `rays` that hit anything of the subtree `start`.
+INLINE uint any_one_by_one(Geometry g, uint start, uint rays, const RayGroup *group, const GroupSetup *setup) {
+    uint blocked = 0u;
+    while (rays) {
+        POP_LOWEST_BIT(rays, k);
+        Ray r = group_ray(group, k);
+        blocked |= trace_any_from(g, start, &r, group_box_test(group, setup, k), group_shear(setup, k)) << k;
+    }
+    return blocked;
+}
+
 #endif

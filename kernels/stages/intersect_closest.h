@@ -65,8 +65,7 @@ INLINE void intersect_rays(Geometry geometry, Block block, Queue rays) {
         RayGroup group;
         GroupSetup setup;
         load_group(&group, geometry, block, rays, PATH_ORIGIN, PATH_DIRECTION, PATH_T, PATH_HIT, PATH_ID, i);
-        set_up_group(&group, &setup);
-        uint live = min(LANES + 0u, n - i), sound = sound_rays(&group, lane_bits(lanes_below(i, n)));
+        uint live = min(LANES + 0u, n - i), sound = set_up_group(&group, lane_bits(lanes_below(i, n)), &setup);
         for (uint k = 0u; k < live; k++) {
             Hit hit = trace_closest_of_group(geometry, &group, &setup, sound, k);
             set_slot(rays, PATH_T, i + k, hit.t);

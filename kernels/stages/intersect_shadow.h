@@ -58,13 +58,8 @@ INLINE void intersect_shadow_rays(Geometry geometry, Block block, Queue shadow) 
         RayGroup group;
         GroupSetup setup;
         load_group(&group, geometry, block, shadow, SHADOW_ORIGIN, SHADOW_DIRECTION, SHADOW_T, SHADOW_FROM, SHADOW_ID, i);
-        set_up_group(&group, &setup);
-        uint live = lane_bits(lanes_below(i, n)), left = sound_rays(&group, live), seen = live;
-        while (left) {
-            POP_LOWEST_BIT(left, k);
-            Ray r = group_ray(&group, k);
-            seen &= ~(trace_any_from(geometry, 0u, &r, group_box_test(&group, &setup, k), group_shear(&setup, k)) << k);
-        }
+        uint live = lane_bits(lanes_below(i, n));
+        uint seen = live & ~any_one_by_one(geometry, 0u, set_up_group(&group, live, &setup), &group, &setup);
         UInt id = SELECT(lanes_below(i, n), read_uint(shadow, SHADOW_ID, i), (UInt)0u);
         add_radiance(block, id, read_vec3(shadow, SHADOW_CONTRIBUTION, i), seen);
     }
