@@ -29,12 +29,13 @@ struct Division {
     int lanes = 16;
     std::uint32_t seed = 7;
     Driver driver = Driver::one_kernel;
+    int samples_per_pixel = samples;
 };
 
 void write_picture(const Scene& scene, const Division& division, const std::string& path) {
     const Device device({.threads = division.threads, .name = {}});
     RenderSettings settings;
-    settings.samples_per_pixel = samples;
+    settings.samples_per_pixel = division.samples_per_pixel;
     settings.seed = division.seed;
     settings.block_slots = division.block_slots;
     settings.lanes = division.lanes;
@@ -107,8 +108,33 @@ TEST(Determinism, OneThread) { expect_same({.threads = 1}); }
 TEST(Determinism, SevenThreads) { expect_same({.threads = 7}); }
 TEST(Determinism, ALaunchAStage) { expect_same({.driver = Driver::staged}); }
 // Both at once: every combination is a program of its own to compile.
-TEST(Determinism, EightLanesAndSmallBlocks) { expect_same({.block_slots = 64, .lanes = 8}); }
+TEST(Determinism, EightLanesAndSmallestBlocks) { expect_same({.block_slots = 16, .lanes = 8}); }
 TEST(Determinism, OneLaneAndLargeBlocks) { expect_same({.block_slots = 1024, .lanes = 1}); }
+
+// A window of one pixel and one sample: each stage runs for one path.
+TEST(Determinism, WavesOfOnePath) {
+    Scene scene = many_features_scene(width, height);
+    const Division one_sample = {.samples_per_pixel = 1};
+    const std::vector<float> whole = picture(scene, one_sample);
+    ASSERT_EQ(whole.size(), std::size_t{3} * width * height);
+    Claim claim("Determinism", "Waves of one path against the same paths of the whole picture: pixels that differ in any bit", "pixels");
+    std::size_t differing = 0;
+    const int pixels = quick_or_full(8, 64);
+    scene.film.crop_width = 1;
+    scene.film.crop_height = 1;
+    for (int i = 0; i < pixels; ++i) {
+        const int pixel = (2 * i + 1) * width * height / (2 * pixels);
+        scene.film.crop_x = pixel % width;
+        scene.film.crop_y = pixel / width;
+        const std::vector<float> alone = picture(scene, one_sample);
+        ASSERT_EQ(alone.size(), 3U);
+        const auto first = whole.begin() + 3 * pixel;
+        differing += differing_pixels(alone, {first, first + 3});
+    }
+    claim.observe(static_cast<double>(differing));
+    claim.count(static_cast<std::uint64_t>(pixels));
+    claim.at_most(0.0);
+}
 
 // A crop window is a part of the whole picture.
 TEST(Determinism, CropWindow) {
