@@ -43,7 +43,8 @@ INLINE EnvironmentPlace environment_place(LightInput in, Vec3 direction) {
     Float y = lane_atan2(axis_distance, d.y) * INV_PI * rows;
     Float row = LESSER(floor(y), rows - 1.0f);
     EnvironmentPlace p;
-    p.column = as_UInt(convert_Int(SELECT(column < 0.0f, columns - 1.0f, column)));
+    // The bound is of what is no direction, in lanes that hold no path: it gets a place on the picture all the same.
+    p.column = as_UInt(convert_Int(LESSER(SELECT(column < 0.0f, columns - 1.0f, column), columns - 1.0f)));
     p.row = as_UInt(convert_Int(row));
     p.column_fraction = x - column;
     p.row_fraction = y - row;

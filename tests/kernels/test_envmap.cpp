@@ -85,6 +85,26 @@ TEST(Envmap, AgreesWithMitsuba) {
     }
 }
 
+// Lanes without a path hold anything; what they read must lie on the picture.
+TEST(Envmap, AnythingHasAPlaceOnThePicture) {
+    const EnvironmentReference reference = random_environment(16, 9);
+    LightProbe light = envmap_probe(reference);
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    const float values[] = {0.0F, -0.0F, 1.0F, -1.0F, 1e-45F, 3e38F, -3e38F, infinite, -infinite, nan};
+    std::vector<LightQuery> queries;
+    for (const float x : values) {
+        for (const float y : values) {
+            for (const float z : values) queries.push_back(along({x, y, z}));
+        }
+    }
+    const double largest = largest_texel(reference.image) * (1.0 + 8.0 * half_ulp);
+    for (const glm::vec3& radiance : light.radiance(queries)) {
+        for (int c = 0; c < 3; ++c) EXPECT_FALSE(std::abs(static_cast<double>(radiance[c])) > largest);
+    }
+    EXPECT_EQ(light.pdf(queries).size(), queries.size());
+}
+
 TEST(Envmap, RadianceIsBilinearUpToThePoles) {
     EnvironmentReference reference = random_environment(16, 9);
     reference.to_world = glm::dmat3(1.0);
