@@ -220,6 +220,7 @@ INLINE LaneUints lane_uints(UInt v) {
 
 typedef Float __attribute__((aligned(4))) FloatUnaligned;
 typedef UInt __attribute__((aligned(4))) UIntUnaligned;
+typedef float8 __attribute__((aligned(4))) Float8Unaligned;
 
 INLINE Float load(global const float *p) { return *(global const FloatUnaligned *)p; }
 INLINE void store(global float *p, Float v) { *(global FloatUnaligned *)p = v; }
@@ -275,6 +276,19 @@ INLINE void scatter(global float *p, UInt i, Float v, uint bits) {
 #endif
 }
 
+// Eight lanes in one permutation. (The first two generations of Zen have the instructions that find the order, but take hundreds of
+// cycles for them.)
+#if WAVELOBE_AVX2 && defined(__BMI2__) && !defined(__znver1__) && !defined(__znver2__)
+#define WAVELOBE_COMPRESS8 1
+INLINE void compress_store8(global float *p, float8 v, uint bits) {
+    ulong kept = __builtin_ia32_pdep_di(bits, 0x0101010101010101ul) * 0xfful;
+    int8 order = convert_int8(as_uchar8(__builtin_ia32_pext_di(0x0706050403020100ul, kept)));
+    *(global Float8Unaligned *)p = __builtin_ia32_permvarsf256(v, order);
+}
+#else
+#define WAVELOBE_COMPRESS8 0
+#endif
+
 // Stores the lanes named by `bits` one after the other from p on, keeping their order.
 // May write anything to p[popcount(bits) .. LANES - 1]: queues are padded by LANES.
 INLINE void compress_store(global float *p, Float v, uint bits) {
@@ -284,6 +298,11 @@ INLINE void compress_store(global float *p, Float v, uint bits) {
     store(p, __builtin_ia32_compresssf512_mask(v, (float16)0.0f, (ushort)bits));
 #elif LANES == 8 && WAVELOBE_AVX512
     store(p, __builtin_ia32_compresssf256_mask(v, (float8)0.0f, (uchar)bits));
+#elif LANES == 16 && WAVELOBE_COMPRESS8
+    compress_store8(p, v.lo, bits & 0xffu);
+    compress_store8(p + popcount(bits & 0xffu), v.hi, bits >> 8);
+#elif LANES == 8 && WAVELOBE_COMPRESS8
+    compress_store8(p, v, bits);
 #else
     // Branch-free: each lane is written where the next live one belongs, and overwritten if it is not live.
     uint n = 0;
