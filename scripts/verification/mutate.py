@@ -35,18 +35,26 @@ MUTANTS = [
     ("Beckmann masking off by 1 % in a coefficient", "bsdf/microfacet.h", "(Float)3.535f", "(Float)3.5f", LOBES),
     ("what is not finite is not looked for", "core/block.h", "Int broken = live & !(finiteness == 0.0f);", "Int broken = live & !TRUE_MASK;",
      ["stages_test_broken_samples"]),
-    ("light samples' weight left out beside BSDF samples", "sampling/mis.h", "    return power_heuristic(pdf_light, pdf_bsdf);", "    return ONE;",
+    ("light samples' weight left out beside BSDF samples", "sampling/mis.h", "SELECT(delta, ONE, inverse_power_heuristic(pdf_light, pdf_bsdf))",
+     "ONE",
      ["verify_test_estimators"] + SCENES),
     ("last child left out where a light's probability is found again", "lights/light_tree.h", "mine / running_sums(importances).s7",
      "mine / running_sums(importances).s6", ["kernels_test_light_tree"]),
     ("facets sure of what is too close to call", "shapes/few_facets.h", "#define FACET_ERROR GAMMA(128)", "#define FACET_ERROR GAMMA(1)",
      ["kernels_test_few_facets"]),
-    ("cosine of the light forgotten", "lights/area.h", "inverse_area / fabs(cosine)", "inverse_area", SCENES),
+    ("cosine of the light forgotten", "lights/area.h", "SELECT(by_area, fabs(cosine), solid_angle)", "SELECT(by_area, ONE, solid_angle)",
+     ["kernels_test_lights"] + SCENES),
 ]
 
 
 def run(command, **options):
     return subprocess.run([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options).returncode
+
+
+def outdated():
+    """Those of the texts to break that are no longer in the kernels, a line each."""
+    return [f"kernels/{path} no longer holds `{old}`: bring the list of scripts/verification/mutate.py up to date"
+            for _, path, old, _, _ in MUTANTS if old not in (ROOT / "kernels" / path).read_text()]
 
 
 def prepare():
@@ -76,6 +84,9 @@ def failing_test(tests):
 
 
 def main():
+    if outdated() or "--check" in sys.argv:
+        print("\n".join(outdated()), end="", file=sys.stderr)
+        return 1 if outdated() else 0
     prepare()
     tests = sorted({t for m in MUTANTS for t in m[4]})
     broken = failing_test(tests)
@@ -93,8 +104,6 @@ def main():
             continue
         file = COPY / "kernels" / path
         text = file.read_text()
-        if old not in text:
-            raise RuntimeError(f"{path} no longer holds `{old}`: bring the list of this script up to date")
         file.write_text(text.replace(old, new, 1))
         try:
             caught = failing_test(tests)
