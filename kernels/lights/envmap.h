@@ -37,14 +37,14 @@ INLINE EnvironmentPlace environment_place(LightInput in, Vec3 direction) {
     Float columns = (Float)(float)e->cell_columns, rows = (Float)(float)e->cell_rows;
     Float turns = lane_atan2(d.x, -d.z) * INV_TWO_PI_F;
     Float x = madd(SELECT(turns < 0.0f, turns + 1.0f, turns), columns, (Float)-0.5f);
-    Float column = floor(x);
+    // What is no direction, in lanes that hold no path, gets the last column and row: LESSER of what is no number is the bound.
+    Float column = LESSER(floor(x), columns - 1.0f);
     // From the distance to the axis, not from the cosine, which hardly changes near the poles.
     Float axis_distance = sqrt(madd(d.x, d.x, d.z * d.z));
     Float y = lane_atan2(axis_distance, d.y) * INV_PI * rows;
     Float row = LESSER(floor(y), rows - 1.0f);
     EnvironmentPlace p;
-    // The bound is of what is no direction, in lanes that hold no path: it gets a place on the picture all the same.
-    p.column = as_UInt(convert_Int(LESSER(SELECT(column < 0.0f, columns - 1.0f, column), columns - 1.0f)));
+    p.column = as_UInt(convert_Int(SELECT(column < 0.0f, columns - 1.0f, column)));
     p.row = as_UInt(convert_Int(row));
     p.column_fraction = x - column;
     p.row_fraction = y - row;

@@ -36,8 +36,7 @@ MUTANTS = [
     ("what is not finite is not looked for", "core/block.h", "Int broken = live & !(finiteness == 0.0f);", "Int broken = live & !TRUE_MASK;",
      ["stages_test_broken_samples"]),
     ("light samples' weight left out beside BSDF samples", "sampling/mis.h", "SELECT(delta, ONE, inverse_power_heuristic(pdf_light, pdf_bsdf))",
-     "ONE",
-     ["verify_test_estimators"] + SCENES),
+     "ONE", ["verify_test_estimators"] + SCENES),
     ("last child left out where a light's probability is found again", "lights/light_tree.h", "mine / running_sums(importances).s7",
      "mine / running_sums(importances).s6", ["kernels_test_light_tree"]),
     ("facets sure of what is too close to call", "shapes/few_facets.h", "#define FACET_ERROR GAMMA(128)", "#define FACET_ERROR GAMMA(1)",
@@ -84,9 +83,10 @@ def failing_test(tests):
 
 
 def main():
-    if outdated() or "--check" in sys.argv:
-        print("\n".join(outdated()), end="", file=sys.stderr)
-        return 1 if outdated() else 0
+    missing = outdated()
+    if missing or "--check" in sys.argv:
+        sys.stderr.writelines(line + "\n" for line in missing)
+        return 1 if missing else 0
     prepare()
     tests = sorted({t for m in MUTANTS for t in m[4]})
     broken = failing_test(tests)
