@@ -38,8 +38,13 @@ void read_top_level(Context& context, const Object& object) {
     else if (object.tag == "sensor") read_sensor(context, object);
     else if (object.tag == "integrator") read_integrator(context, object);
     else if (object.tag == "film") read_film(context, object);
-    else if (object.tag != "sampler" && object.tag != "rfilter" && object.tag != "medium" && object.tag != "phase" &&
-             object.tag != "volume")  // what refers to them decides
+    // What refers to these decides; what nothing refers to must be something all the same.
+    else if (object.tag == "sampler") require_type(context, object, sampler_types());
+    else if (object.tag == "rfilter") require_type(context, object, filter_types());
+    else if (object.tag == "medium") require_type(context, object, known_medium_types());
+    else if (object.tag == "phase") require_type(context, object, known_phase_types());
+    else if (object.tag == "volume") require_type(context, object, known_volume_types());
+    else
         context.faults.add(object.place, object.label(), "a " + object.tag + " is not supported",
                            "remove it from the scene");
 }

@@ -131,6 +131,8 @@ TEST(Faults, Structure) {
                  "more than one bsdf");
     expect_fault("<shape type=\"sphere\"><texture type=\"checkerboard\" name=\"colour\"/></shape>",
                  "cannot hold a nested texture");
+    expect_fault("<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\"/><texture type=\"bitmap\" name=\"reflectance\"/></bsdf>",
+                 "more than one object named `reflectance`");
     expect_fault("<shape type=\"sphere\"><float name=\"radius\" value=\"1\"><scale/></float></shape>",
                  "cannot be nested");
     expect_fault("<bsdf type=\"twosided\"/>", "holds 0 nested");
@@ -140,6 +142,7 @@ TEST(Faults, Structure) {
     expect_fault("<shape type=\"disk\"><emitter type=\"point\"/></shape>", "only an `area`");
     expect_fault("<emitter type=\"constant\"/><emitter type=\"constant\"/>", "has a `constant` or `envmap`");
     expect_fault("<integrator type=\"path\"/><integrator type=\"path\"/>", "has an integrator");
+    expect_fault("<shape type=\"sphere\"><ref id=\"\"/></shape>", "the id is empty");
     expect_fault("<alias id=\"a\" as=\"b\"/>", "no object before this line");
     expect_fault("<shape type=\"obj\"/>", "`filename` is missing");
     expect_fault("<shape type=\"obj\"><string name=\"filename\" value=\"absent.obj\"/></shape>", "does not exist");
@@ -147,6 +150,12 @@ TEST(Faults, Structure) {
                  "cannot vary");
     expect_fault("<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\"/></shape>", "scattering media are not supported");
     expect_fault("<float name=\"gamma\" value=\"1\"/>", "unknown property `gamma`");
+}
+
+TEST(Faults, OfWhatNothingRefersTo) {
+    for (const char* tag : {"sampler", "rfilter", "medium", "phase", "volume"})
+        expect_fault("<" + std::string(tag) + " type=\"sphere\"/>", "this type of " + std::string(tag) + " is not supported");
+    EXPECT_TRUE(SceneFolder().element_faults("<medium type=\"heterogeneous\"/><phase type=\"hg\"/><rfilter type=\"tent\"/>").empty());
 }
 
 TEST(Faults, SensorIsNeeded) {

@@ -14,13 +14,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace wavelobe::test {
 
@@ -35,16 +33,8 @@ T quick_or_full(T quick, T full) {
     return verify_fully() ? full : quick;
 }
 
-inline void write_report_line(const nlohmann::json& line) {
-    const char* path = std::getenv("WAVELOBE_VERIFY_ROWS");
-    if (path == nullptr) return;
-    std::ofstream(path, std::ios::app) << line.dump() << "\n";
-}
-
-inline std::string test_of_claim() {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    return info == nullptr ? "" : std::string(info->test_suite_name()) + "." + info->name();
-}
+// The name of the running test.
+std::string test_of_claim();
 
 class Claim {
 public:
@@ -78,21 +68,7 @@ public:
     }
 
 private:
-    void report(double bound, bool holds) const {
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        // JSON knows no infinity.
-        const auto number = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json("infinite"); };
-        write_report_line({{"section", section_},
-                           {"claim", text_},
-                           {"unit", unit_},
-                           {"measured", number(worst_)},
-                           {"bound", number(bound)},
-                           {"samples", samples_},
-                           {"seconds", seconds},
-                           {"worst", where_},
-                           {"holds", holds && samples_ > 0},
-                           {"test", test_of_claim()}});
-    }
+    void report(double bound, bool holds) const;
 
     std::string section_, text_, unit_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -101,10 +77,9 @@ private:
     std::uint64_t samples_ = 0;
 };
 
-// A table of the report; cells are numbers or text.
-inline void write_report_table(const std::string& section, const std::string& title,
-                               const std::vector<std::string>& columns, const std::vector<std::vector<nlohmann::json>>& rows) {
-    write_report_line({{"section", section}, {"table", title}, {"columns", columns}, {"rows", rows}});
-}
+// A table of the report.
+using ReportCell = std::variant<int, double, std::string>;
+void write_report_table(const std::string& section, const std::string& title, const std::vector<std::string>& columns,
+                        const std::vector<std::vector<ReportCell>>& rows);
 
 }  // namespace wavelobe::test

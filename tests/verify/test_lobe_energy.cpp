@@ -55,12 +55,12 @@ TEST_P(LobeEnergy, NoneIsGained) {
     Claim gain("Appearance", name + ": energy gained in a white furnace", "share");
     const std::vector<double> cosines{1.0, 0.7, 0.4, 0.1, 0.01, 1e-4};
     const auto n = quick_or_full<std::uint32_t>(1U << 14, 1U << 20);
-    std::vector<std::vector<nlohmann::json>> rows;
+    std::vector<std::vector<ReportCell>> rows;
     std::uint64_t total = 0;
     for (const auto& [label, m] : white_materials(name)) {
         for (double side : {1.0, -1.0}) {
             if (side < 0.0 && !is_transmissive(m)) continue;
-            std::vector<nlohmann::json> row{label, side > 0.0 ? "above" : "below"};
+            std::vector<ReportCell> row{label, side > 0.0 ? "above" : "below"};
             for (double cosine : cosines) {
                 const glm::vec3 wi = direction_at_height(side * cosine, 0.7);
                 std::vector<LobeQuery> queries(n);

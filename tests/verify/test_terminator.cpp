@@ -60,7 +60,7 @@ TEST(Terminator, WhiteBallsKeepTheirEnergy) {
 
 // What the black inside takes, and none gains.
 TEST(Terminator, MetalLosesWhatGoesInside) {
-    std::vector<std::vector<nlohmann::json>> rows;
+    std::vector<std::vector<ReportCell>> rows;
     Claim claim("Numerical stability", "Rough white metal on coarse balls with smooth normals: gain", "relative");
     for (const int levels : {1, 2, 3}) {
         for (const float alpha : {0.05F, 0.3F}) {
@@ -72,7 +72,7 @@ TEST(Terminator, MetalLosesWhatGoesInside) {
                 return found.mean.x;
             };
             const double facets = mean_of(false), smooth = mean_of(true);
-            rows.push_back({8 << (2 * levels), alpha, facets, smooth});
+            rows.push_back({8 << (2 * levels), static_cast<double>(alpha), facets, smooth});
             EXPECT_GT(facets, 0.7);
             EXPECT_GT(smooth, facets);
         }
@@ -103,7 +103,7 @@ double share_of_dark(const Image& image, const Image& round) {
 
 TEST(Terminator, CoarseBallsAreLitLikeRoundOnes) {
     const Image round = side_lit(7, false);
-    std::vector<std::vector<nlohmann::json>> rows;
+    std::vector<std::vector<ReportCell>> rows;
     Claim claim("Numerical stability", "Coarse balls lit from the side, smooth terminator: less than half as bright as a round one", "of its lit pixels");
     for (const int levels : {2, 3}) {
         const double facets = share_of_dark(side_lit(levels, false), round), smooth = share_of_dark(side_lit(levels, true), round);

@@ -95,6 +95,10 @@ std::optional<MediumBoundary> read_boundary(Query& query);
 // The medium that a sensor or light is in; -1: none.
 int read_surrounding_medium(Query& query);
 std::vector<std::string> medium_types();
+// Of Mitsuba 3 and 0.x, supported or not: a scene may hold some that nothing refers to.
+std::vector<std::string> known_medium_types();
+std::vector<std::string> known_phase_types();
+std::vector<std::string> known_volume_types();
 
 // ---- instances.cpp ----------------------------------------------------------------------------------
 

@@ -255,6 +255,8 @@ private:
 
     void read_reference(const Element& element, Object& parent) {
         if (!check_attributes(element, {"id"}, {"name"}, faults_) || element.broken) return;
+        if (element.text("id").empty())
+            return faults_.add(element.place, element.label(), "the id is empty", "name the object that is meant");
         parent.children.push_back({element.text("name"), nullptr, element.text("id"), element.place});
     }
 

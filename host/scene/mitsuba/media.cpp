@@ -50,7 +50,7 @@ Medium read_homogeneous(Query& query) {
     medium.absorption = absorption * static_cast<float>(query.real("scale", 1.0, not_negative));
     // Of scattering, or of how Mitsuba samples.
     query.accept({"sample_emitters", "has_spectral_extinction"});
-    query.children("phase");
+    for (const Child* phase : query.children("phase")) require_type(query.context(), *phase->object, known_phase_types());
     return medium;
 }
 
@@ -105,5 +105,10 @@ int read_surrounding_medium(Query& query) {
 }
 
 std::vector<std::string> medium_types() { return {"homogeneous"}; }
+std::vector<std::string> known_medium_types() { return {"heterogeneous", "homogeneous"}; }
+std::vector<std::string> known_phase_types() {
+    return {"blendphase", "hg", "isotropic", "kkay", "microflake", "mixturephase", "rayleigh", "sggx", "tabphase"};
+}
+std::vector<std::string> known_volume_types() { return {"constvolume", "gridvolume", "hgridvolume", "volcache"}; }
 
 }  // namespace wavelobe::mitsuba

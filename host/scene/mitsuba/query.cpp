@@ -323,6 +323,10 @@ void Query::finish() {
     for (const Child& child : object_.children) {
         if (child.object == nullptr || std::find(taken_.begin(), taken_.end(), &child) != taken_.end()) continue;
         const std::string name = child.name.empty() ? "" : " named `" + child.name + "`";
+        if (std::any_of(taken_.begin(), taken_.end(), [&](const Child* taken) { return !name.empty() && taken->name == child.name; })) {
+            context_.faults.add(child.place, object_.label(), "holds more than one object" + name, "keep one of them");
+            continue;
+        }
         context_.faults.add(child.place, object_.label(),
                             "cannot hold a nested " + child.object->label() + name + expected,
                             child.name.empty() ? "" : suggestion(child.name, asked_));
@@ -334,6 +338,10 @@ void refuse_type(Context& context, const Object& object, const std::vector<std::
         object.place, object.label(),
         "this type of " + object.tag + " is not supported; expected one of " + quoted_list(supported),
         suggestion(object.type, supported));
+}
+
+void require_type(Context& context, const Object& object, const std::vector<std::string>& known) {
+    if (!object.broken && std::find(known.begin(), known.end(), object.type) == known.end()) refuse_type(context, object, known);
 }
 
 }  // namespace wavelobe::mitsuba

@@ -83,6 +83,9 @@ private:
 // Adds the fault of a type that is not among the supported ones.
 void refuse_type(Context& context, const Object& object, const std::vector<std::string>& supported);
 
+// The same, for an object that is not read any further.
+void require_type(Context& context, const Object& object, const std::vector<std::string>& known);
+
 // The names of a table of plugins, one line each.
 template <typename Table>
 std::vector<std::string> names_of(const Table& table) {
