@@ -85,6 +85,14 @@ TEST(LegacyScenes, WhatIsUnknownIsPassedOverWithAWord) {
     EXPECT_EQ(bright.warnings.size(), 1U);
 }
 
+TEST(LegacyScenes, WhatIsMisspelledIsNot) {
+    const auto sphere = [](const std::string& name) {
+        return SceneFolder().faults(old("<shape type=\"sphere\"><float name=\"" + name + "\" value=\"3\"/></shape>"));
+    };
+    for (const char* name : {"raduis", "radiuss", "radius_scale"}) EXPECT_TRUE(sphere(name).empty()) << name;  // too far, or a variant
+    for (const char* name : {"ridius", "rdius", "raddius"}) EXPECT_TRUE(has_text(sphere(name), "did you mean `radius`?")) << name;
+}
+
 TEST(LegacyScenes, WhatChangesThePictureIsRefused) {
     const SceneFolder folder;
     EXPECT_TRUE(has_text(folder.faults(old(R"(<integrator type="ao"/>)")), "not supported"));

@@ -315,7 +315,7 @@ void Query::finish() {
     for (const Property& property : object_.properties) {
         if (std::binary_search(asked_.begin(), asked_.end(), property.name)) continue;
         const std::string message = "unknown property `" + property.name + "`";
-        if (object_.legacy) warn(message + " is ignored");
+        if (object_.legacy && !is_misspelled(property.name, asked_)) warn(message + " is ignored");
         else
             context_.faults.add(property.place, object_.label(), message + expected,
                                 suggestion(property.name, asked_));

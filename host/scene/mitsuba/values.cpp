@@ -137,4 +137,12 @@ std::string suggestion(std::string_view wrong, const std::vector<std::string>& n
     return best == nullptr ? std::string() : "did you mean `" + *best + "`?";
 }
 
+bool is_misspelled(std::string_view wrong, const std::vector<std::string>& names) {
+    const std::string plain = plain_letters(wrong);
+    return plain.size() >= 5 && plain.size() <= 100 && std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        const std::string right = plain_letters(name);
+        return !plain.starts_with(right) && !right.starts_with(plain) && edit_distance(plain, right) == 1;
+    });
+}
+
 }  // namespace wavelobe::mitsuba

@@ -33,4 +33,7 @@ std::string quoted_list(const std::vector<std::string>& names);
 // "did you mean `x`?" for the closest of the names, empty when none is close.
 std::string suggestion(std::string_view wrong, const std::vector<std::string>& names);
 
+// Whether one letter is wrong, missing or too much in one of the names, before its end: what follows one is another version's variant of it.
+bool is_misspelled(std::string_view wrong, const std::vector<std::string>& names);
+
 }  // namespace wavelobe::mitsuba
